@@ -1,7 +1,8 @@
 // The vocabulary of scalar operations: all that a block may compute with.
 //
 // A block is written once, templated over a scalar S. S is double or float on a machine, a dual number where
-// a derivative is wanted, or a traced scalar where text is generated. Each kind of scalar offers:
+// a derivative is wanted, lanes where several run side by side, or a traced scalar where text is generated. Each kind
+// of scalar offers:
 //
 //   arithmetic   + - * / unary-           comparison  < <= > >= == !=       logic   ! && || !=
 //   abs sqrt exp log sin cos tan asin acos atan        power(base, exponent)   min max
@@ -18,6 +19,7 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -131,11 +133,21 @@ T select(bool condition, const T& a, const T& b) {
   return condition ? a : b;
 }
 
-/// select of two values that cost much: of numbers only the chosen one is worked out, of traced scalars both are.
+/// A scalar of several numbers side by side: as it computes, it is known whether all of them or none meet a condition.
+template <class S>
+concept SideBySide = requires(const Bool<S>& condition) {
+  { condition.all() } -> std::same_as<bool>;
+  { condition.none() } -> std::same_as<bool>;
+};
+
+/// select of two values that cost much: of numbers only the chosen one is worked out, of numbers side by side what any
+/// of them chooses, of traced scalars both are.
 template <class S, class First, class Second>
 S either(const Bool<S>& condition, const First& a, const Second& b) {
   if constexpr (is_number<S>) {
     return condition ? a() : b();
+  } else if constexpr (SideBySide<S>) {
+    return condition.all() ? a() : condition.none() ? b() : select(condition, a(), b());
   } else {
     const S first = a();
     const S second = b();
@@ -150,11 +162,15 @@ bool vanishes(S x) {
 }
 
 /// A value that costs much and is `at_zero` where `factor` is 0, also where the value is then infinite or not a number:
-/// of numbers it is worked out only where that does not vanish, of traced scalars always.
+/// of numbers it is worked out only where that does not vanish, side by side where any does not, of traced scalars
+/// always.
 template <class T, class S, class Value>
 T unless_zero(const S& factor, const T& at_zero, const Value& value) {
   if constexpr (is_number<S>) {
     return vanishes(factor) ? at_zero : value();
+  } else if constexpr (SideBySide<S>) {
+    const Bool<S> zero = factor == S(0.0);
+    return zero.all() ? at_zero : zero.none() ? value() : select(zero, at_zero, value());
   } else {
     return select(factor == S(0.0), at_zero, value());
   }

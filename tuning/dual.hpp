@@ -26,8 +26,26 @@
 
 namespace hysteron {
 
-template <int N>
-class Dual {
+/// A register of so many numbers.
+template <int W>
+struct Register;
+template <>
+struct Register<2> {
+  using Type [[gnu::vector_size(16)]] = double;
+};
+template <>
+struct Register<4> {
+  using Type [[gnu::vector_size(32)]] = double;
+};
+template <>
+struct Register<8> {
+  using Type [[gnu::vector_size(64)]] = double;
+};
+
+/// W is the width of a register in numbers: 2, 4 or 8. It changes no bit, only what the code is compiled for. The
+/// alignment is stated, since code with and without such registers shares duals.
+template <int N, int W = 2>
+class alignas(8 * W) Dual {
   static_assert(N > 0, "a dual number has at least one derivative");
 
  public:
@@ -35,7 +53,7 @@ class Dual {
 
   constexpr Dual() = default;
   /// A constant: its gradient is 0.
-  constexpr explicit Dual(double value) : pairs_{Pair{value, 0.0}} {}
+  constexpr explicit Dual(double value) : parts_{Part{value}} {}
   Dual(double value, const Gradient& gradient) : Dual(value) {
     for (std::size_t i = 0; i < gradient.size(); ++i) {
       set(i + 1, gradient[i]);
@@ -48,7 +66,7 @@ class Dual {
     return result;
   }
 
-  [[nodiscard]] double value() const { return pairs_[0][0]; }
+  [[nodiscard]] double value() const { return parts_[0][0]; }
   [[nodiscard]] Gradient gradient() const {
     Gradient result;
     for (std::size_t i = 0; i < result.size(); ++i) {
@@ -62,14 +80,14 @@ class Dual {
   friend Dual operator+(const Dual& a, const Dual& b) {
     Dual result;
     for (std::size_t i = 0; i < size; ++i) {
-      result.pairs_[i] = a.pairs_[i] + b.pairs_[i];
+      result.parts_[i] = a.parts_[i] + b.parts_[i];
     }
     return result;
   }
   friend Dual operator-(const Dual& a, const Dual& b) {
     Dual result;
     for (std::size_t i = 0; i < size; ++i) {
-      result.pairs_[i] = a.pairs_[i] - b.pairs_[i];
+      result.parts_[i] = a.parts_[i] - b.parts_[i];
     }
     return result;
   }
@@ -157,34 +175,35 @@ class Dual {
   friend double value_of(const Dual& x) { return x.value(); }
 
  private:
-  /// Value and gradient in one row of pairs, the value first. Every operation then writes whole pairs, as the compiler
-  /// reads them when it copies a Dual; with a lone value, each copy waited for its stores.
-  using Pair [[gnu::vector_size(16)]] = double;
-  static constexpr std::size_t size = (static_cast<std::size_t>(N) + 2) / 2;
+  /// Value and gradient in one row of registers, the value first. Every operation then writes whole registers, as the
+  /// compiler reads them when it copies a Dual; with a lone value, each copy waited for its stores.
+  using Part = typename Register<W>::Type;
+  static constexpr std::size_t width = W;
+  static constexpr std::size_t size = (static_cast<std::size_t>(N) + width) / width;
 
-  [[nodiscard]] double get(std::size_t place) const { return pairs_[place / 2][place % 2]; }
-  void set(std::size_t place, double number) { pairs_[place / 2][place % 2] = number; }
+  [[nodiscard]] double get(std::size_t place) const { return parts_[place / width][place % width]; }
+  void set(std::size_t place, double number) { parts_[place / width][place % width] = number; }
 
-  /// f(a) with df = slope·da. The first pair is put together before it is written: who reads a pair of which one half
+  /// f(a) with df = slope·da. The first part is put together before it is written: who reads one of which an element
   /// was written by itself waits for the store.
   static Dual chain(double value, double slope, const Dual& a) {
     Dual result;
-    Pair first = slope * a.pairs_[0];
+    Part first = slope * a.parts_[0];
     first[0] = value;
-    result.pairs_[0] = first;
+    result.parts_[0] = first;
     for (std::size_t i = 1; i < size; ++i) {
-      result.pairs_[i] = slope * a.pairs_[i];
+      result.parts_[i] = slope * a.parts_[i];
     }
     return result;
   }
   /// f(a, b) with df = by_a·da + by_b·db.
   static Dual chain(double value, double by_a, const Dual& a, double by_b, const Dual& b) {
     Dual result;
-    Pair first = by_a * a.pairs_[0] + by_b * b.pairs_[0];
+    Part first = by_a * a.parts_[0] + by_b * b.parts_[0];
     first[0] = value;
-    result.pairs_[0] = first;
+    result.parts_[0] = first;
     for (std::size_t i = 1; i < size; ++i) {
-      result.pairs_[i] = by_a * a.pairs_[i] + by_b * b.pairs_[i];
+      result.parts_[i] = by_a * a.parts_[i] + by_b * b.parts_[i];
     }
     return result;
   }
@@ -201,7 +220,7 @@ class Dual {
     return constant;
   }
 
-  std::array<Pair, size> pairs_{};
+  std::array<Part, size> parts_{};
 };
 
 }  // namespace hysteron

@@ -14,8 +14,8 @@ namespace hysteron {
 
 template <class S>
 inline constexpr bool is_dual = false;
-template <int N>
-inline constexpr bool is_dual<Dual<N>> = true;
+template <int N, int W>
+inline constexpr bool is_dual<Dual<N, W>> = true;
 
 /// An unknown: a variable where it is among the columns of the pass, else a constant.
 template <class S>
@@ -34,7 +34,7 @@ template <class S>
 void set_inputs(Machine<S>& machine, const Drive& drive, std::size_t step) {
   for (std::size_t i = 0; i < drive.inputs.size(); ++i) {
     if (step == 0 || drive.inputs[i].size() > 1) {
-      machine.set_input(i, S(at_step(drive.inputs[i], step)));
+      machine.set_input(i, at_step(drive.inputs[i], step));
     }
   }
 }
@@ -42,8 +42,8 @@ void set_inputs(Machine<S>& machine, const Drive& drive, std::size_t step) {
 inline double plain_value(double value) {
   return value;
 }
-template <int N>
-double plain_value(const Dual<N>& value) {
+template <int N, int W>
+double plain_value(const Dual<N, W>& value) {
   return value.value();
 }
 

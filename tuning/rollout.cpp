@@ -9,6 +9,7 @@
 
 #include "codegen/cosimulation/session.hpp"
 #include "tuning/dual_value.hpp"
+#include "tuning/rollout_unknowns.hpp"
 
 namespace hysteron::detail {
 namespace {
@@ -21,8 +22,10 @@ double sample_time_of(const OutputErrorProblem& problem) {
   return problem.experiments.empty() ? 0.0 : problem.experiments.front().drive.sample_time;
 }
 
-bool acts_in(const FreeParameter& free, std::size_t experiment) {
-  return !free.record || *free.record == experiment;
+/// The unknowns of one point.
+template <class S>
+auto unknowns_at(const VectorXd& x, std::span<const Index> columns) {
+  return [&x, columns](Index column, Index seed) { return seeded<S>(x[column], seed, columns); };
 }
 
 }  // namespace
@@ -81,49 +84,11 @@ Index Rollout::column_at(Index column, std::size_t start) const {
 }
 
 template <class S>
-void Rollout::load_states(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::size_t start,
-                          std::span<const Index> columns) {
-  for (std::size_t state = 0; state < problem_.initial_states.size(); ++state) {
-    *machine.real_state(problem_.initial_states[state].path) =
-        seeded<S>(x[state_column(experiment, start, state)], state_column(experiment, 0, state), columns);
-  }
-}
-
-template <class S>
-bool Rollout::restarts(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::size_t step,
-                       std::size_t& start, std::span<const Index> columns) {
-  const std::vector<std::size_t>& steps = problem_.experiments[experiment].restarts;
-  if (start == steps.size() || step != steps[start]) {
-    return false;
-  }
-  load_states(machine, x, experiment, ++start, columns);
-  return true;
-}
-
-template <class S>
-void Rollout::set_parameters(Machine<S>& machine, const VectorXd& parameters, std::size_t experiment,
-                             std::span<const Index> columns) {
-  for (std::size_t j = 0; j < problem_.parameters.size(); ++j) {
-    const FreeParameter& free = problem_.parameters[j];
-    const auto column = static_cast<Index>(j);
-    if (acts_in(free, experiment)) {
-      machine.set_parameter(free.parameter, seeded<S>(parameters[column], column, columns), free.element);
-    }
-  }
-}
-
-template <class S>
-void Rollout::prepare(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::span<const Index> columns) {
-  set_parameters(machine, x, experiment, columns);
-  machine.reset();
-  load_states(machine, x, experiment, 0, columns);
-}
-
-template <class S>
 bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::span<const Index> columns,
                    const Replay& replay, VectorXd& residuals, MatrixXd* jacobian) {
   machine.use_directions(columns.size());
-  prepare(machine, x, experiment, columns);
+  const auto of = unknowns_at<S>(x, columns);
+  prepare(machine, experiment, of);
   const Experiment& record = problem_.experiments[experiment];
   std::vector<Index> targets(columns.begin(), columns.end());
   std::size_t step = 0;
@@ -135,12 +100,12 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
   std::vector<double> values;
   for (const records::RowRange& range : record.train) {
     for (; step < range.last; ++step) {
-      if (restarts(machine, x, experiment, step, start, columns)) {
+      if (restarts(machine, experiment, step, start, of)) {
         std::ranges::transform(columns, targets.begin(), [&](Index column) { return column_at(column, start); });
       }
       set_inputs(machine, record.drive, step);
       for (std::size_t i = 0; i < given; ++i) {
-        machine.set_input(replay.played->rest.first_input + i, S((*played)[step * given + i]));
+        machine.set_input(replay.played->rest.first_input + i, (*played)[step * given + i]);
       }
       machine.step();
       if (replay.kept != nullptr) {
@@ -176,6 +141,14 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
 }
 
 bool Rollout::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian) {
+  if (Foreseen* const found = jacobian == nullptr ? among_foreseen(x) : nullptr) {
+    const bool has_value = found->residuals.has_value();
+    if (has_value) {
+      residuals = std::move(*found->residuals);
+    }
+    foreseen_.erase(foreseen_.begin() + (found - foreseen_.data()));
+    return has_value;
+  }
   try {
     return all_residuals(x, residuals, jacobian);
   } catch (const cosimulation::FmuRefusal&) {  // a point at which a model cannot go on has no value
@@ -207,6 +180,10 @@ bool Rollout::plain_pass(const VectorXd& x, std::size_t experiment, VectorXd& re
   const Replay replay = is_grid_ ? of_grid(x, experiment) : of_unreached(experiment);
   Machine<double>& machine = replay.played != nullptr ? replay.played->machines.plain : whole_.plain;
   return pass<double>(machine, x, experiment, {}, replay, residuals, nullptr);
+}
+
+bool Rollout::keeping_pass(const VectorXd& x, std::size_t experiment, Kept& kept, VectorXd& residuals) {
+  return pass<double>(whole_.plain, x, experiment, {}, {.kept = &kept}, residuals, nullptr);
 }
 
 std::vector<Index> Rollout::columns_of(std::size_t experiment) const {
@@ -276,12 +253,13 @@ bool Rollout::derivative_passes(const VectorXd& x, std::size_t experiment, std::
 }
 
 std::vector<Signal> Rollout::outputs(const VectorXd& x, std::size_t experiment) {
-  prepare<double>(whole_.plain, x, experiment, {});
+  const auto of = unknowns_at<double>(x, {});
+  prepare(whole_.plain, experiment, of);
   const Drive& inputs = problem_.experiments[experiment].drive;
   std::vector<Signal> result(problem_.outputs.size(), Signal(inputs.steps));
   std::size_t start = 0;
   for (std::size_t step = 0; step < inputs.steps; ++step) {
-    (void)restarts<double>(whole_.plain, x, experiment, step, start, {});
+    (void)restarts(whole_.plain, experiment, step, start, of);
     set_inputs(whole_.plain, inputs, step);
     whole_.plain.step();
     for (std::size_t i = 0; i < problem_.outputs.size(); ++i) {
@@ -300,7 +278,7 @@ std::vector<double> Rollout::own_states(const VectorXd& parameters) {
   };
   for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
     const Experiment& experiment = problem_.experiments[e];
-    set_parameters<double>(whole_.plain, parameters, e, {});
+    set_parameters(whole_.plain, e, unknowns_at<double>(parameters, {}));
     whole_.plain.reset();
     keep();
     std::size_t step = 0;

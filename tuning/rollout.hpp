@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -56,6 +58,18 @@ class Rollout {
   /// remember of the states before a restart counts, in the Jacobian, for those after it.
   bool residuals(const Eigen::VectorXd& x, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian);
 
+  /// Whether several points can be run at once: on a processor with wide registers, of a program without an FMU.
+  [[nodiscard]] bool can_run_side_by_side() const { return has_wide_registers() && !reach_.has_fmu(); }
+  /// As residuals() without derivatives, to the bit, for lane_count points at the most at once. A point that has no
+  /// value gets no residuals. Only where it can be done.
+  [[nodiscard]] std::vector<std::optional<Eigen::VectorXd>> residuals_side_by_side(
+      std::span<const Eigen::VectorXd> points);
+
+  /// Points of which residuals() without derivatives are likely to be asked for next, before those that were foreseen
+  /// already: where it can be done, they are then run side by side.
+  void foresee(std::vector<Eigen::VectorXd> points);
+  void forget_foreseen() { foreseen_.clear(); }
+
   /// The measured outputs of one record over all its steps.
   [[nodiscard]] std::vector<Signal> outputs(const Eigen::VectorXd& x, std::size_t experiment);
 
@@ -64,8 +78,16 @@ class Rollout {
   [[nodiscard]] std::vector<double> own_states(const Eigen::VectorXd& parameters);
 
  private:
+  struct Foreseen {
+    Eigen::VectorXd x{};
+    bool done = false;
+    std::optional<Eigen::VectorXd> residuals{};  ///< once it is done; none where it has no value
+  };
+  /// A point that was foreseen with enough others, with its residuals; null: it is to be run by itself.
+  Foreseen* among_foreseen(const Eigen::VectorXd& x);
   bool all_residuals(const Eigen::VectorXd& x, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian);
   bool plain_pass(const Eigen::VectorXd& x, std::size_t experiment, Eigen::VectorXd& residuals);
+  bool keeping_pass(const Eigen::VectorXd& x, std::size_t experiment, Kept& kept, Eigen::VectorXd& residuals);
   bool derivative_passes(const Eigen::VectorXd& x, std::size_t experiment, std::span<const Eigen::Index> columns,
                          Eigen::VectorXd& residuals, Eigen::MatrixXd& jacobian);
   /// What of a record a pass plays instead of running it, and what it keeps for later ones; each may be null.
@@ -86,21 +108,26 @@ class Rollout {
   Replay of_grid(const Eigen::VectorXd& x, std::size_t experiment);
   /// Whether what is kept of a record is what a rollout at x would give.
   [[nodiscard]] bool holds(const Kept& kept, const Eigen::VectorXd& x, std::size_t experiment) const;
-  template <class S>
-  void prepare(Machine<S>& machine, const Eigen::VectorXd& x, std::size_t experiment,
-               std::span<const Eigen::Index> columns);
-  /// The states at a start of a record: 0, then its restarts. `columns` are those of start 0.
-  template <class S>
-  void load_states(Machine<S>& machine, const Eigen::VectorXd& x, std::size_t experiment, std::size_t start,
-                   std::span<const Eigen::Index> columns);
+  /// What is played into points that are run side by side: what none of the columns reaches in which they differ. It is
+  /// run with the first of them where it is not kept yet, whose residuals then stand; null: there is nothing.
+  Kept* played_side_by_side(std::span<const Eigen::VectorXd> points, std::size_t experiment,
+                            std::vector<std::optional<Eigen::VectorXd>>& residuals);
+  void pass_side_by_side(Machine<Lanes>& machine, std::span<const Eigen::VectorXd> points, std::size_t experiment,
+                         const Kept* played, std::vector<std::optional<Eigen::VectorXd>>& residuals) const;
+
+  // The unknowns come by of(column, seed): the value of the unknown in `column`, as S; its derivative is that of the
+  // column `seed`, which is where it stands at start 0.
+  template <class S, class Of>
+  void prepare(Machine<S>& machine, std::size_t experiment, const Of& of) const;
+  /// The states at a start of a record: 0, then its restarts.
+  template <class S, class Of>
+  void load_states(Machine<S>& machine, std::size_t experiment, std::size_t start, const Of& of) const;
   /// Whether a record restarts at this step; then `start` is counted on and its states are loaded.
-  template <class S>
-  bool restarts(Machine<S>& machine, const Eigen::VectorXd& x, std::size_t experiment, std::size_t step,
-                std::size_t& start, std::span<const Eigen::Index> columns);
-  /// The parameters that act in a record; each as S gives its value and its derivatives.
-  template <class S>
-  void set_parameters(Machine<S>& machine, const Eigen::VectorXd& parameters, std::size_t experiment,
-                      std::span<const Eigen::Index> columns);
+  template <class S, class Of>
+  bool restarts(Machine<S>& machine, std::size_t experiment, std::size_t step, std::size_t& start, const Of& of) const;
+  /// The parameters that act in a record.
+  template <class S, class Of>
+  void set_parameters(Machine<S>& machine, std::size_t experiment, const Of& of) const;
   [[nodiscard]] Eigen::Index state_column(std::size_t experiment, std::size_t start, std::size_t state) const;
   /// Of what is in this column at start 0.
   [[nodiscard]] Eigen::Index column_at(Eigen::Index column, std::size_t start) const;
@@ -112,8 +139,10 @@ class Rollout {
   std::vector<Eigen::Index> first_state_{};             ///< column of the first state, by record; at the end their sum
   Machines whole_;
   Reach reach_;
-  std::unique_ptr<Kept> unreached_{};      ///< by any unknown; null: there is nothing to keep
-  std::unique_ptr<Kept> of_grid_{};        ///< while points of a grid are tried
+  std::unique_ptr<Kept> unreached_{};  ///< by any unknown; null: there is nothing to keep
+  std::unique_ptr<Kept> of_grid_{};    ///< while points of a grid are tried
+  std::unique_ptr<Kept> beside_{};     ///< while points are run side by side
+  std::vector<Foreseen> foreseen_{};
   std::vector<Eigen::VectorXd> last_x_{};  ///< by record
   bool is_grid_ = true;                    ///< no derivative has been asked for yet
 };

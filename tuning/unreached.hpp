@@ -24,6 +24,7 @@ class Reach {
   [[nodiscard]] bool leaves(Eigen::Index column, const std::vector<bool>& nodes) const;
   /// The nodes that none of these columns reaches. None at all where an FMU is among the nodes: it keeps its own time.
   [[nodiscard]] std::vector<bool> unreached(const std::vector<Eigen::Index>& columns) const;
+  [[nodiscard]] bool has_fmu() const { return has_fmu_; }
 
  private:
   [[nodiscard]] const std::vector<bool>& of(Eigen::Index column) const;

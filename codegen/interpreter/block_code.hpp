@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "blocks/catalogue.hpp"
+#include "blocks/sized_catalogue.hpp"
 #include "codegen/trace/block_type.hpp"
+#include "codegen/trace/operation.hpp"
 
 namespace hysteron {
 
@@ -29,22 +31,39 @@ struct Instruction {
   const BlockType* block = nullptr;  ///< null: an operation
 };
 
-/// A block for the scalar S: sizes of its structures, offsets of their members, and its functions.
+/// The functions of a block for the scalar S.
 template <class S>
-struct BlockCode {
+struct BlockRuns {
   using Run = void (*)(const Instruction<S>&);
-  std::size_t state_size = 0;
-  std::size_t out_size = 0;
-  std::size_t prepared_size = 0;
-  std::size_t alignment = 1;
-  std::vector<std::size_t> state_offsets;
-  std::vector<std::size_t> out_offsets;
   Run prepare = nullptr;  ///< gathers the parameters, and works out what follows from them; null without any
   Run reset = nullptr;    ///< constructs state and outputs, state from the parameters
   Run output = nullptr;
   Run update = nullptr;  ///< null without memory
   Run step = nullptr;    ///< output, then update
 };
+
+/// A block for the scalar S: its functions, sizes of its structures, offsets of their members.
+template <class S>
+struct BlockCode : BlockRuns<S> {
+  std::size_t state_size = 0;
+  std::size_t out_size = 0;
+  std::size_t prepared_size = 0;
+  std::size_t alignment = 1;
+  std::vector<std::size_t> state_offsets{};
+  std::vector<std::size_t> out_offsets{};
+};
+
+/// All that the steps of a machine call. It is compiled by itself, in the source that includes run_table.hpp, so that
+/// it can be compiled for a processor that not every machine has.
+template <class S>
+struct RunTable {
+  std::array<BlockRuns<S>, Catalogue::size> blocks;      ///< in the order of the catalogue
+  std::array<BlockRuns<S>, SizedCatalogue::size> sized;  ///< in the order of theirs; update and step of one with states
+  std::array<typename BlockRuns<S>::Run, static_cast<std::size_t>(Op::At)> operations;  ///< by Op
+  void (*constant)(void* target, double value);  ///< writes a number as S, as a whole: who reads it waits for no part
+};
+template <class S>
+const RunTable<S>& run_table();
 
 namespace detail {
 
@@ -168,7 +187,7 @@ struct Code {
   }
 
   /// Without memory a step is an output.
-  static typename BlockCode<S>::Run whole_step() {
+  static constexpr typename BlockRuns<S>::Run whole_step() {
     if constexpr (HasMemory<B> || StepsAtOnce<B>) {
       return &step;
     } else {
@@ -176,20 +195,24 @@ struct Code {
     }
   }
 
-  static BlockCode<S> make() {
-    static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Out>);
-    static_assert(std::is_trivially_copyable_v<Prepared>);
-    return {.state_size = sizeof(State),
-            .out_size = sizeof(Out),
-            .prepared_size = sizeof(Prepared),
-            .alignment = std::max({alignof(State), alignof(Out), alignof(Prepared)}),
-            .state_offsets = member_offsets<State>(),
-            .out_offsets = member_offsets<Out>(),
-            .prepare = field_count<Params> > 0 ? &prepare : nullptr,
+  static constexpr BlockRuns<S> runs() {
+    return {.prepare = field_count<Params> > 0 ? &prepare : nullptr,
             .reset = &reset,
             .output = &output,
             .update = HasMemory<B> ? &update : nullptr,
             .step = whole_step()};
+  }
+
+  static BlockCode<S> with_layout(const BlockRuns<S>& runs) {
+    static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Out>);
+    static_assert(std::is_trivially_copyable_v<Prepared>);
+    return {runs,
+            sizeof(State),
+            sizeof(Out),
+            sizeof(Prepared),
+            std::max({alignof(State), alignof(Out), alignof(Prepared)}),
+            member_offsets<State>(),
+            member_offsets<Out>()};
   }
 };
 
@@ -201,7 +224,8 @@ std::span<const BlockCode<S>> block_codes() {
   static const std::vector<BlockCode<S>> codes = [] {
     std::vector<BlockCode<S>> list;
     list.reserve(Catalogue::size);
-    Catalogue::for_each([&]<class B> { list.push_back(detail::Code<B, S>::make()); });
+    Catalogue::for_each(
+        [&]<class B> { list.push_back(detail::Code<B, S>::with_layout(run_table<S>().blocks[list.size()])); });
     return list;
   }();
   return codes;

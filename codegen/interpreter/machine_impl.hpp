@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <stdexcept>
 
 #include "codegen/graph/sample_time.hpp"
 #include "codegen/interpreter/fmu_node.hpp"
@@ -14,77 +15,61 @@
 namespace hysteron {
 namespace detail {
 
-/// An operation of an expression, as an instruction: operands behind pins, the result in out.
-template <Op op, class S>
-void run_operation(const Instruction<S>& at) {
-  constexpr OperationInfo about = info(op);
-  const auto real = [&](std::size_t i) -> const S& { return *static_cast<const S*>(at.pins[i]); };
-  const auto integer = [&](std::size_t i) { return *static_cast<const std::int32_t*>(at.pins[i]); };
-  const auto truth = [&](std::size_t i) { return *static_cast<const bool*>(at.pins[i]); };
-  if constexpr (op == Op::Select) {
-    *static_cast<S*>(at.out) = truth(0) ? real(1) : real(2);
-  } else if constexpr (op == Op::SelectInt) {
-    *static_cast<std::int32_t*>(at.out) = truth(0) ? integer(1) : integer(2);
-  } else if constexpr (op == Op::SelectBool) {
-    *static_cast<bool*>(at.out) = truth(0) ? truth(1) : truth(2);
-  } else if constexpr (op == Op::SelectWord) {
-    *static_cast<std::uint16_t*>(at.out) = *static_cast<const std::uint16_t*>(truth(0) ? at.pins[1] : at.pins[2]);
-  } else if constexpr (op == Op::ToInt) {
-    *static_cast<std::int32_t*>(at.out) = to_int(real(0));
-  } else if constexpr (op == Op::ToReal) {
-    *static_cast<S*>(at.out) = to_real<S>(integer(0));
-  } else if constexpr (op == Op::WordToInt) {
-    *static_cast<std::int32_t*>(at.out) = *static_cast<const std::uint16_t*>(at.pins[0]);
-  } else if constexpr (op == Op::IntToWord) {
-    *static_cast<std::uint16_t*>(at.out) = int_to_word(integer(0));
-  } else if constexpr (about.operand == Type::Real && about.result == Type::Real && about.arity > 0) {
-    *static_cast<S*>(at.out) = real_operation(op, real(0), real(about.arity - 1));
-  } else if constexpr (about.operand == Type::Real && about.result == Type::Bool) {
-    *static_cast<bool*>(at.out) = comparison(op, real(0), real(1));
-  } else if constexpr (about.operand == Type::Int && about.result == Type::Bool) {
-    *static_cast<bool*>(at.out) = comparison(op, integer(0), integer(1));
-  } else if constexpr (about.operand == Type::Int && about.arity > 0) {
-    *static_cast<std::int32_t*>(at.out) = int_operation(op, integer(0), integer(about.arity - 1));
-  } else if constexpr (about.operand == Type::Bool && about.arity > 0) {
-    *static_cast<bool*>(at.out) = bool_operation(op, truth(0), truth(about.arity - 1));
-  }
-}
-
-template <class S, std::size_t... I>
-auto operation_table(std::index_sequence<I...> /*ops*/) {
-  return std::array<void (*)(const Instruction<S>&), sizeof...(I)>{&run_operation<static_cast<Op>(I), S>...};
-}
-
 template <class S>
-void write_as(void* target, Type type, double number) {
-  switch (type) {
-    case Type::Real:
-      new (target) S(static_cast<S>(number));
-      break;
-    case Type::Bool:
-      new (target) bool(number != 0.0);
-      break;
-    case Type::Int:
-      new (target) std::int32_t(to_int(number));
-      break;
-    case Type::Word:
-      new (target) std::uint16_t(static_cast<std::uint16_t>(to_int(number)));
-      break;
+void write_as(void* target, Type type, const NumberOf<S>& number) {
+  if constexpr (SideBySide<S>) {
+    switch (type) {
+      case Type::Real:
+        new (target) S(number);
+        break;
+      case Type::Bool:
+        new (target) Bool<S>(number != S(0.0));
+        break;
+      case Type::Int:
+        new (target) Int<S>(to_int(number));
+        break;
+      case Type::Word:
+        new (target) Word<S>(int_to_word(to_int(number)));
+        break;
+    }
+  } else {
+    const double plain = value_of(number);
+    switch (type) {
+      case Type::Real:
+        new (target) S(static_cast<S>(plain));
+        break;
+      case Type::Bool:
+        new (target) bool(plain != 0.0);
+        break;
+      case Type::Int:
+        new (target) std::int32_t(to_int(plain));
+        break;
+      case Type::Word:
+        new (target) std::uint16_t(static_cast<std::uint16_t>(to_int(plain)));
+        break;
+    }
   }
 }
 
 template <class S>
 NumberOf<S> read_as(const void* source, Type type) {
   using Number = NumberOf<S>;
+  const auto is_true = [](const Bool<S>& truth) {
+    if constexpr (SideBySide<S>) {
+      return select(truth, S(1.0), S(0.0));
+    } else {
+      return Number(truth ? 1.0 : 0.0);
+    }
+  };
   switch (type) {
     case Type::Real:
       return *static_cast<const S*>(source);
     case Type::Bool:
-      return Number(*static_cast<const bool*>(source) ? 1.0 : 0.0);
+      return is_true(*static_cast<const Bool<S>*>(source));
     case Type::Int:
-      return to_real<Number>(*static_cast<const std::int32_t*>(source));
+      return to_real<Number>(*static_cast<const Int<S>*>(source));
     default:
-      return Number(static_cast<double>(*static_cast<const std::uint16_t*>(source)));
+      return to_real<Number>(word_to_int(*static_cast<const Word<S>*>(source)));
   }
 }
 
@@ -136,7 +121,11 @@ void Machine<S>::lay_out() {
     Placed placed;
     if (node.block != nullptr) {
       if (node.block->fmu != nullptr) {
-        fmus_[index] = std::make_unique<FmuNode<S>>(*node.block, node.path, *directions_);
+        if constexpr (SideBySide<S>) {
+          throw std::logic_error("an FMU runs by itself, not side by side");
+        } else {
+          fmus_[index] = std::make_unique<FmuNode<S>>(*node.block, node.path, *directions_);
+        }
       }
       if (node.block->sized != nullptr && !sized_.contains(node.block)) {
         sized_.emplace(node.block, detail::sized_code<S>(*node.block->sized));
@@ -172,12 +161,12 @@ void Machine<S>::lay_out() {
     for (std::size_t element = 0; element < parameter.value.size(); ++element) {
       // An array is an array of S; a single value stands alone.
       detail::write_as<S>(memory_.get() + parameters_[i] + element * sizeof(S), parameter.field.type,
-                          parameter.value[element]);
+                          NumberOf<S>(parameter.value[element]));
     }
   }
   const auto write_literal = [&](const Wire& wire) {
     if (wire.from == Wire::From::Literal) {
-      detail::write_as<S>(memory_.get() + literals_[wire.index], wire.type, graph.literals[wire.index]);
+      detail::write_as<S>(memory_.get() + literals_[wire.index], wire.type, NumberOf<S>(graph.literals[wire.index]));
     }
   };
   std::ranges::for_each(graph.wires, write_literal);
@@ -259,8 +248,6 @@ Instruction<S> Machine<S>::instruction_of(std::uint32_t index) {
 
 template <class S>
 void Machine<S>::place_instructions() {
-  static const auto operations =
-      detail::operation_table<S>(std::make_index_sequence<static_cast<std::size_t>(Op::At)>{});
   const Graph& graph = program_->graph;
   for (std::uint32_t index = 0; index < graph.nodes.size(); ++index) {
     placed_[index].first_pin = pins_.size();
@@ -291,7 +278,7 @@ void Machine<S>::place_instructions() {
     const Node& node = graph.nodes[action.node];
     auto instruction = instruction_of(action.node);
     if (node.block == nullptr) {
-      instruction.run = operations[static_cast<std::size_t>(node.op)];
+      instruction.run = run_table<S>().operations[static_cast<std::size_t>(node.op)];
     } else {
       const auto& code = code_of(action.node);
       instruction.run = action.kind == Action::Kind::Output   ? code.output
@@ -315,7 +302,7 @@ void Machine<S>::set_parameter(std::size_t parameter, const Number& value, std::
     *reinterpret_cast<S*>(target) = static_cast<S>(value);
     next_directions_.note(value, program_->graph.parameters[parameter].field);
   } else {
-    detail::write_as<S>(target, type, value_of(value));
+    detail::write_as<S>(target, type, value);
   }
 }
 
@@ -344,7 +331,16 @@ void Machine<S>::set_input(std::size_t input, const Number& value) {
   if (program_->graph.inputs[input].type == Type::Real) {
     *reinterpret_cast<S*>(memory_.get() + inputs_[input]) = static_cast<S>(value);
   } else {
-    detail::write_as<S>(memory_.get() + inputs_[input], program_->graph.inputs[input].type, value_of(value));
+    detail::write_as<S>(memory_.get() + inputs_[input], program_->graph.inputs[input].type, value);
+  }
+}
+
+template <class S>
+void Machine<S>::set_input(std::size_t input, double value) requires(!std::is_same_v<Number, double>) {
+  if (program_->graph.inputs[input].type == Type::Real) {
+    run_table<S>().constant(memory_.get() + inputs_[input], value);
+  } else {
+    set_input(input, Number(value));
   }
 }
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 
-#include "blocks/sized_catalogue.hpp"
 #include "codegen/interpreter/block_code.hpp"
 #include "codegen/trace/sized_block.hpp"
 
@@ -18,8 +17,8 @@ class RunView {
   explicit RunView(const Instruction<S>& at) : at_(at), block_(*at.block->sized) {}
 
   [[nodiscard]] const S& in(std::size_t field, std::size_t k) const { return real(block_.first_input[field] + k); }
-  [[nodiscard]] bool flag(std::size_t field) const {
-    return *static_cast<const bool*>(at_.pins[block_.first_input[field]]);
+  [[nodiscard]] const Bool<S>& flag(std::size_t field) const {
+    return *static_cast<const Bool<S>*>(at_.pins[block_.first_input[field]]);
   }
   [[nodiscard]] const S& param(std::size_t field, std::size_t k) const { return (&real(block_.first_param[field]))[k]; }
   [[nodiscard]] const S& state(std::size_t k) const { return static_cast<const S*>(at_.state)[k]; }
@@ -68,6 +67,9 @@ struct SizedCode {
     output(at);
     update(at);
   }
+  static constexpr BlockRuns<S> runs() {
+    return {.prepare = nullptr, .reset = &reset, .output = &output, .update = &update, .step = &step};
+  }
 };
 
 template <class S>
@@ -82,14 +84,17 @@ BlockCode<S> sized_code(const SizedBlock& block) {
   for (std::size_t k = 0; k < block.outputs.size(); ++k) {
     code.out_offsets.push_back(k * sizeof(S));
   }
+  std::size_t place = 0;
   SizedCatalogue::for_each([&]<class B> {
     if (block.kind->about.name == B::about.name) {
-      code.reset = &SizedCode<B, S>::reset;
-      code.output = &SizedCode<B, S>::output;
-      code.update = block.states.empty() ? nullptr : &SizedCode<B, S>::update;
-      code.step = block.states.empty() ? code.output : &SizedCode<B, S>::step;
+      static_cast<BlockRuns<S>&>(code) = run_table<S>().sized[place];
     }
+    ++place;
   });
+  if (block.states.empty()) {
+    code.update = nullptr;
+    code.step = code.output;
+  }
   return code;
 }
 

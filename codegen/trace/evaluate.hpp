@@ -54,9 +54,12 @@ template <MachineReal S>
 S single(S x) {
   return static_cast<S>(static_cast<float>(x));
 }
-/// The lower 16 bits.
+/// The lower 16 bits, and back.
 inline std::uint16_t int_to_word(std::int32_t x) {
   return static_cast<std::uint16_t>(bits(x) & 0xFFFFU);
+}
+inline std::int32_t word_to_int(std::uint16_t x) {
+  return x;
 }
 
 template <class S>
@@ -104,7 +107,7 @@ S real_operation(Op op, const S& a, const S& b) {
 }
 
 template <class T>
-bool comparison(Op op, const T& a, const T& b) {
+auto comparison(Op op, const T& a, const T& b) {
   switch (op) {
     case Op::Less:
     case Op::IntLess:
@@ -120,7 +123,8 @@ bool comparison(Op op, const T& a, const T& b) {
   }
 }
 
-inline bool bool_operation(Op op, bool a, bool b) {
+template <class T>
+T bool_operation(Op op, const T& a, const T& b) {
   switch (op) {
     case Op::And:
       return a && b;

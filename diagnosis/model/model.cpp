@@ -157,6 +157,15 @@ bool Model::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian
   return true;
 }
 
+void Model::foresee(std::vector<VectorXd> points) {
+  rollout_->forget_foreseen();
+  rollout_->foresee(std::move(points));
+}
+
+void Model::foresee_first(std::vector<VectorXd> points) {
+  rollout_->foresee(std::move(points));
+}
+
 void Model::count_work(bool derivatives) const {
   std::size_t steps = 0;
   for (const Experiment& experiment : problem_->experiments) {

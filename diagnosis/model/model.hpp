@@ -102,6 +102,13 @@ class Model {
   /// nothing of where it lies.
   bool residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian = nullptr);
 
+  /// Points of which the residuals are likely to be asked for next: where the processor can, they are then simulated
+  /// eight at a time. No answer differs by a bit, nor the work that is counted: a point that is not asked for costs
+  /// nothing but time.
+  void foresee(std::vector<VectorXd> points);
+  /// As well as those that were foreseen before, and before them.
+  void foresee_first(std::vector<VectorXd> points);
+
  private:
   bool smooth_jacobian(const VectorXd& x, MatrixXd& jacobian);
   void forgive_within_cells(VectorXd& residuals, MatrixXd* jacobian) const;

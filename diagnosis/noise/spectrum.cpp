@@ -1,6 +1,7 @@
 #include "diagnosis/noise/spectrum.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
@@ -8,6 +9,7 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <type_traits>
 #include <unsupported/Eigen/FFT>
 #include <utility>
 
@@ -330,15 +332,30 @@ std::vector<double> strongest_periods(const Eigen::VectorXd& residuals, const st
   constexpr int steps = 600;  // of a quarter of a turn over the range: up to 150 turns
   using Complex = std::complex<double>;
   std::vector<Complex> sums(steps - first);
-  for (std::size_t k = 0; k < size; k += stride) {
-    const double quarter = 0.5 * std::numbers::pi * (places[k] - low) / range;
-    const Complex turn = std::polar(1.0, quarter);
-    Complex term = residuals[static_cast<Eigen::Index>(k)] * std::polar(1.0, first * quarter);
-    for (Complex& sum : sums) {
-      sum += term;
-      term = {term.real() * turn.real() - term.imag() * turn.imag(),
-              term.real() * turn.imag() + term.imag() * turn.real()};
+  std::size_t next = 0;
+  // So many samples at once: each one's terms follow from each other, and need not wait for those of the next.
+  const auto add = [&]<std::size_t count>(std::integral_constant<std::size_t, count> /*samples*/) {
+    std::array<Complex, count> turns;
+    std::array<Complex, count> terms;
+    for (std::size_t i = 0; i < count; ++i, next += stride) {
+      const double quarter = 0.5 * std::numbers::pi * (places[next] - low) / range;
+      turns[i] = std::polar(1.0, quarter);
+      terms[i] = residuals[static_cast<Eigen::Index>(next)] * std::polar(1.0, first * quarter);
     }
+    for (Complex& sum : sums) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const Complex term = terms[i];
+        sum += term;
+        terms[i] = {term.real() * turns[i].real() - term.imag() * turns[i].imag(),
+                    term.real() * turns[i].imag() + term.imag() * turns[i].real()};
+      }
+    }
+  };
+  while (next + 3 * stride < size) {
+    add(std::integral_constant<std::size_t, 4>{});
+  }
+  while (next < size) {
+    add(std::integral_constant<std::size_t, 1>{});
   }
   std::vector<double> heights;
   std::ranges::transform(sums, std::back_inserter(heights), [](const Complex& sum) { return std::norm(sum); });

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
+#include <vector>
 
 namespace hysteron::diagnosis {
 namespace {
@@ -12,9 +15,20 @@ void scan(Model& model, Fit& best, Index first, Index count) {
   VectorXd residuals;
   for (Index j = first; j < first + count; ++j) {
     const double middle = best.x[j];
-    for (int step = -9; step <= 9; ++step) {
+    const auto at = [&](int step) {
       VectorXd x = best.x;
       x[j] = std::clamp(middle * (1.0 + 0.004 * step), model.lower()[j], model.upper()[j]);
+      return x;
+    };
+    std::vector<VectorXd> points;
+    for (int step = -9; step <= 9; ++step) {
+      if (step != 0) {
+        points.push_back(at(step));
+      }
+    }
+    model.foresee(std::move(points));
+    for (int step = -9; step <= 9; ++step) {
+      const VectorXd x = at(step);
       if (step == 0 || !model.residuals(x, residuals)) {
         continue;
       }
@@ -27,29 +41,48 @@ void scan(Model& model, Fit& best, Index first, Index count) {
   }
 }
 
+/// One unknown, times a factor.
+struct TrialStep {
+  Index unknown = 0;
+  double factor = 1.0;
+};
+
 /// Where the output jumps with a parameter, derivatives do not see the way: single steps by trial, then a last fit.
 /// `finest` is the last step, as a share.
 void pattern_search(Model& model, Fit& best, Index first, Index count, double finest) {
+  std::vector<TrialStep> trials;
+  for (const double share : {0.08, 0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4}) {
+    for (Index j = first; j < first + count && share >= finest; ++j) {
+      trials.push_back({.unknown = j, .factor = 1.0 + share});
+      trials.push_back({.unknown = j, .factor = 1.0 - share});
+    }
+  }
+  const auto moved_by = [&](const TrialStep& trial) {
+    VectorXd x = best.x;
+    x[trial.unknown] =
+        std::clamp(x[trial.unknown] * trial.factor, model.lower()[trial.unknown], model.upper()[trial.unknown]);
+    return x;
+  };
+  const auto foresee_from = [&](std::size_t next) {
+    std::vector<VectorXd> points;
+    std::transform(trials.begin() + static_cast<std::ptrdiff_t>(next), trials.end(), std::back_inserter(points),
+                   moved_by);
+    model.foresee(std::move(points));
+  };
+  foresee_from(0);
   VectorXd residuals;
   bool moved = false;
-  for (const double share : {0.08, 0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4}) {
-    if (share < finest) {
-      break;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    const VectorXd x = moved_by(trials[k]);
+    if (!model.residuals(x, residuals)) {
+      continue;
     }
-    for (Index j = first; j < first + count; ++j) {
-      for (const double sign : {1.0, -1.0}) {
-        VectorXd x = best.x;
-        x[j] = std::clamp(x[j] * (1.0 + sign * share), model.lower()[j], model.upper()[j]);
-        if (!model.residuals(x, residuals)) {
-          continue;
-        }
-        const double cost = cost_of(model, x, residuals, nullptr);
-        if (cost < best.cost * (1.0 - 1e-6)) {
-          best.x = x;
-          best.cost = cost;
-          moved = true;
-        }
-      }
+    const double cost = cost_of(model, x, residuals, nullptr);
+    if (cost < best.cost * (1.0 - 1e-6)) {
+      best.x = x;
+      best.cost = cost;
+      moved = true;
+      foresee_from(k + 1);
     }
   }
   if (moved) {

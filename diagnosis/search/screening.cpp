@@ -2,63 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <memory>
-#include <optional>
 #include <span>
 #include <utility>
 
-#include "diagnosis/effects/grid_points.hpp"
 #include "diagnosis/search/superposition.hpp"
+#include "diagnosis/search/tried_effect.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
 
-/// Outputs within this share of twice the change at half the strength: linear in it.
-constexpr double linear_within = 0.05;
-
 /// Of the gap, what a start has to explain for its parameters to be narrowed down.
 constexpr double worth_narrowing = 0.2;
 
-class Screening {
+class Screening : private TriedEffect {
  public:
-  Screening(const Task& task, Candidate candidate, const Grids& grids, const VectorXd& at, const Background& background)
-      : grids_(grids), background_(background) {
-    screened_.candidate = std::move(candidate);
-    const Applied& own = screened_.candidate.own();
-    parameters_ = static_cast<Index>(own.parameters.size());
-    neutral_.resize(parameters_);
-    std::vector<Unknown> further = screened_.candidate.variant.further;
-    for (std::size_t j = 0; j < own.parameters.size(); ++j) {
-      if (std::isnan(grids.settings[j])) {
-        screened_.unknowns.push_back(unknown_of(own.parameters[j], own.paths[j], grids.parameters[j]));
-        further.push_back(screened_.unknowns.back());
-        free_.push_back(static_cast<Index>(j));
-        neutral_[static_cast<Index>(j)] =
-            own.parameters[j].strength ? own.parameters[j].field.neutral : screened_.unknowns.back().start;
-      } else {
-        screened_.candidate.variant.effects.back().settings.emplace_back(own.paths[j], grids.settings[j]);
-        neutral_[static_cast<Index>(j)] = grids.settings[j];
-      }
-    }
-    auto program = std::make_shared<Program>(*screened_.candidate.variant.program);
-    for (const auto& [path, value] : own.settings) {
-      set_parameter(program->graph, path, value);
-    }
-    screened_.candidate.variant.program = std::move(program);
-    model_.emplace(task, *screened_.candidate.variant.program, further);
-    first_ = model_->first_further() + static_cast<Index>(screened_.candidate.variant.further.size());
-    base_.resize(model_->unknowns());
-    base_.head(first_) = at.head(first_);
-    base_.tail(model_->unknowns() - first_ - std::ssize(free_)) = at.tail(at.size() - first_);
-  }
+  using TriedEffect::TriedEffect;
 
   Screened run(std::size_t keep) {
     std::vector<Start> starts;
-    if (screened_.candidate.own().has_end()) {
+    if (own().has_end()) {
       try_intervals(starts);
     } else {
-      for (const VectorXd& shape : shapes_of(screened_.candidate.own(), grids_, neutral_)) {
+      const std::vector<VectorXd> all = shapes();
+      foresee_changes(all);
+      for (const VectorXd& shape : all) {
         try_shape(shape, starts);
       }
     }
@@ -71,12 +40,12 @@ class Screening {
   Screened run_about(const std::vector<Start>& coarse, std::size_t stride, std::size_t keep) {
     std::vector<Start> starts;
     for (const Start& start : coarse) {
-      VectorXd values = neutral_;
-      for (Index k = 0; k < std::ssize(free_); ++k) {
-        values[free_[static_cast<std::size_t>(k)]] = start.values[k];
+      VectorXd values = neutral();
+      for (Index k = 0; k < std::ssize(free()); ++k) {
+        values[free()[static_cast<std::size_t>(k)]] = start.values[k];
       }
       starts.push_back({.values = values, .gain = start.gain});
-      for (const Index j : free_) {
+      for (const Index j : free()) {
         if (parameter(j).role != Role::Quantum || &start == &coarse.front()) {
           try_neighbours(values, j, stride, starts);
         }
@@ -101,25 +70,24 @@ class Screening {
       }
     }
     for (Start& start : kept) {
-      VectorXd values(std::ssize(free_));
-      for (Index k = 0; k < std::ssize(free_); ++k) {
-        values[k] = start.values[free_[static_cast<std::size_t>(k)]];
+      VectorXd values(std::ssize(free()));
+      for (Index k = 0; k < std::ssize(free()); ++k) {
+        values[k] = start.values[free()[static_cast<std::size_t>(k)]];
       }
       start.values = std::move(values);
     }
     std::ranges::stable_sort(kept, [](const Start& a, const Start& b) { return a.gain > b.gain; });
-    screened_.starts = std::move(kept);
-    return std::move(screened_);
+    return std::move(static_cast<TriedEffect&>(*this)).with(std::move(kept));
   }
 
   /// What varies smoothly, between the points of its grid and by halves of their distance: an exponential that is off
   /// by half its time constant, or a limit that cuts twice as much, leaves more of a gap than another effect at its
   /// best.
   void narrow(std::vector<Start>& starts) {
-    for (Index j = 0; j < parameters_ && !starts.empty(); ++j) {
+    for (Index j = 0; j < parameter_count() && !starts.empty(); ++j) {
       const std::vector<double>& grid = points(j);
       Start best = *std::ranges::max_element(starts, {}, &Start::gain);
-      if (!is_narrowed(j) || grid.size() < 3 || best.gain < worth_narrowing * background_.unexplained()) {
+      if (!is_narrowed(j) || grid.size() < 3 || best.gain < worth_narrowing * background().unexplained()) {
         continue;
       }
       const std::size_t at = nearest(grid, best.values[j]);
@@ -131,7 +99,9 @@ class Screening {
         const double above = between(middle, high);
         for (const double value : {below, above}) {
           if (value != middle) {
-            try_moved(best.values, j, value, starts);
+            VectorXd moved = best.values;
+            moved[j] = value;
+            try_moved(moved, j, starts);
           }
         }
         best = *std::ranges::max_element(starts, {}, &Start::gain);
@@ -155,8 +125,8 @@ class Screening {
 
   /// Whether a quantum is the step on which the measured values lie.
   [[nodiscard]] bool is_measured(const VectorXd& values) const {
-    for (Index j = 0; j < parameters_; ++j) {
-      const Grid& grid = grids_.parameters[static_cast<std::size_t>(j)];
+    for (Index j = 0; j < parameter_count(); ++j) {
+      const Grid& grid = this->grid(j);
       if (std::ranges::count(std::span(grid.values).first(grid.measured), values[j]) > 0) {
         return true;
       }
@@ -166,7 +136,7 @@ class Screening {
 
   /// One parameter moved along its grid, the others where they are.
   void try_neighbours(const VectorXd& values, Index j, std::size_t stride, std::vector<Start>& starts) {
-    const Grid& grid = grids_.parameters[static_cast<std::size_t>(j)];
+    const Grid& grid = this->grid(j);
     const auto last = std::ssize(grid.values) - 1;
     if (last < 1) {
       return;
@@ -174,26 +144,26 @@ class Screening {
     const auto middle = static_cast<std::ptrdiff_t>(nearest(grid.values, values[j]));
     const bool whole = parameter(j).role == Role::Quantum;
     const auto reach = whole ? last : std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(stride) - 1);
+    std::vector<VectorXd> moved;
     for (auto k = std::max<std::ptrdiff_t>(0, middle - reach); k <= std::min(last, middle + reach); ++k) {
-      if (k == middle) {
-        continue;
+      if (k != middle) {
+        moved.push_back(values);
+        moved.back()[j] = grid.values[static_cast<std::size_t>(k)];
       }
-      try_moved(values, j, grid.values[static_cast<std::size_t>(k)], starts);
+    }
+    foresee_moved(moved, j);
+    for (const VectorXd& there : moved) {
+      try_moved(there, j, starts);
     }
   }
 
   /// One parameter at another value; a new shape takes its strengths anew where the output is linear in them.
-  void try_moved(const VectorXd& values, Index j, double value, std::vector<Start>& starts) {
-    VectorXd moved = values;
-    moved[j] = value;
+  void try_moved(const VectorXd& moved, Index j, std::vector<Start>& starts) {
     if (parameter(j).strength) {
       try_point(moved, starts);
       return;
     }
-    VectorXd shape = moved;
-    for (const Index strength : strengths()) {
-      shape[strength] = neutral_[strength];
-    }
+    const VectorXd shape = shape_of(moved);
     const std::size_t before = starts.size();
     if (is_linear_there(shape)) {
       try_shape(shape, starts);
@@ -201,66 +171,6 @@ class Screening {
     if (starts.size() == before) {
       try_point(moved, starts);
     }
-  }
-
-  [[nodiscard]] const std::vector<double>& points(Index j) const {
-    return grids_.parameters[static_cast<std::size_t>(j)].values;
-  }
-  [[nodiscard]] const EffectParameter& parameter(Index j) const {
-    return screened_.candidate.own().parameters[static_cast<std::size_t>(j)];
-  }
-
-  /// The residuals at one setting of the effect's parameters; empty where the model has no value there.
-  VectorXd residuals_at(const VectorXd& values) {
-    VectorXd x = base_;
-    for (Index k = 0; k < std::ssize(free_); ++k) {
-      const double value = values[free_[static_cast<std::size_t>(k)]];
-      x[first_ + k] = std::clamp(value, model_->lower()[first_ + k], model_->upper()[first_ + k]);
-    }
-    VectorXd residuals;
-    return model_->residuals(x, residuals) ? residuals : VectorXd();
-  }
-
-  VectorXd change_at(const VectorXd& values) {
-    VectorXd residuals = residuals_at(values);
-    if (residuals.size() > 0) {
-      residuals -= background_.residuals();
-    }
-    return residuals;
-  }
-
-  [[nodiscard]] std::vector<Index> strengths() const {
-    std::vector<Index> list;
-    for (Index j = 0; j < parameters_; ++j) {
-      if (parameter(j).strength && !points(j).empty()) {
-        list.push_back(j);
-      }
-    }
-    return list;
-  }
-
-  /// Whether the change at twice a strength is twice the change: asked once for each strength.
-  bool is_linear(Index strength, const VectorXd& values, const VectorXd& change) {
-    if (!std::isfinite(parameter(strength).field.neutral)) {
-      return false;
-    }
-    VectorXd twice = values;
-    twice[strength] += values[strength] - parameter(strength).field.neutral;
-    const VectorXd double_change = change_at(twice);
-    return double_change.size() > 0 && (double_change - 2.0 * change).norm() <= linear_within * double_change.norm();
-  }
-
-  /// Whether the output is linear in all strengths, asked at the first shape.
-  bool is_linear_there(const VectorXd& shape) {
-    const std::vector<Index> list = strengths();
-    for (Index k = std::ssize(linear_); k < std::ssize(list); ++k) {
-      const Index j = list[static_cast<std::size_t>(k)];
-      VectorXd values = shape;
-      values[j] = points(j).front();
-      const VectorXd change = change_at(values);
-      linear_.push_back(change.size() > 0 && is_linear(j, values, change));
-    }
-    return std::ranges::all_of(linear_, [](bool one) { return one; });
   }
 
   void try_shape(const VectorXd& shape, std::vector<Start>& starts) {
@@ -271,13 +181,12 @@ class Screening {
       try_grid(shape, list, starts);
       return;
     }
-    MatrixXd changes(background_.residuals().size(), std::ssize(list));
+    MatrixXd changes(background().residuals().size(), std::ssize(list));
     VectorXd small = shape;
     for (Index k = 0; k < std::ssize(list); ++k) {
       const Index j = list[static_cast<std::size_t>(k)];
-      const std::vector<double>& grid = points(j);
       VectorXd values = shape;
-      values[j] = linear ? grid.front() : grid[grid.size() / 2];
+      values[j] = this->small(j, linear);
       small[j] = values[j];
       const VectorXd change = change_at(values);
       if (change.size() == 0) {
@@ -296,16 +205,22 @@ class Screening {
   /// What begins at one instant and ends at another, from small steps at each of them.
   void try_intervals(std::vector<Start>& starts) {
     constexpr std::size_t most = 4;
-    const Index begin = *std::ranges::find_if(free_, [&](Index j) { return is_instant(j) && !is_end(j); });
-    const Index end = *std::ranges::find_if(free_, [&](Index j) { return is_instant(j) && is_end(j); });
+    const Index begin = *std::ranges::find_if(free(), [&](Index j) { return is_instant(j) && !is_end(j); });
+    const Index end = *std::ranges::find_if(free(), [&](Index j) { return is_instant(j) && is_end(j); });
     const Index strength = strengths().front();
     const std::vector<double>& instants = points(begin);
     const double never = points(end).back();
     const double small = points(strength).front();
-    VectorXd values = neutral_;
+    VectorXd values = neutral();
     values[end] = never;
     values[strength] = small;
-    MatrixXd steps = MatrixXd::Zero(background_.residuals().size(), std::ssize(instants));
+    std::vector<VectorXd> settings;
+    for (const double instant : instants) {
+      settings.push_back(values);
+      settings.back()[begin] = instant;
+    }
+    foresee(settings);
+    MatrixXd steps = MatrixXd::Zero(background().residuals().size(), std::ssize(instants));
     for (Index k = 0; k < std::ssize(instants); ++k) {
       values[begin] = instants[static_cast<std::size_t>(k)];
       if (const VectorXd change = change_at(values); change.size() > 0) {
@@ -313,7 +228,7 @@ class Screening {
       }
     }
     const auto at = [&](Index k) { return k < std::ssize(instants) ? instants[static_cast<std::size_t>(k)] : never; };
-    for (const Superposition::Interval& one : Superposition(steps, background_).intervals(most)) {
+    for (const Superposition::Interval& one : Superposition(steps, background()).intervals(most)) {
       values[begin] = at(one.begin);
       values[end] = at(one.end);
       for (const double share : {1.0, 0.3}) {
@@ -326,15 +241,6 @@ class Screening {
   }
   [[nodiscard]] bool is_instant(Index j) const { return parameter(j).role == Role::Instant; }
   [[nodiscard]] bool is_end(Index j) const { return std::isinf(parameter(j).field.preset); }
-
-  /// Whether all strengths are sizes of something that is added, so that a straight line is a guess for each of them.
-  [[nodiscard]] bool are_amplitudes(const std::vector<Index>& list) const {
-    return std::ranges::all_of(list, [&](Index j) {
-      const EffectParameter& one = parameter(j);
-      return std::isfinite(one.field.neutral) && !is_gap(one.role) && one.role != Role::Rate &&
-             one.role != Role::Duration;
-    });
-  }
 
   /// Whether the diagram keeps a part of what the straight line promises.
   bool try_linear(const VectorXd& shape, const VectorXd& small, const std::vector<Index>& list, const MatrixXd& changes,
@@ -351,19 +257,23 @@ class Screening {
       high[k] = std::max(a, b);
     }
     VectorXd alpha;
-    const double gain = background_.gain(changes, low, high, alpha);
+    const double gain = background().gain(changes, low, high, alpha);
     VectorXd values = shape;
     for (Index k = 0; k < std::ssize(list); ++k) {
       const Index j = list[static_cast<std::size_t>(k)];
       values[j] = parameter(j).field.neutral + alpha[k] * (small[j] - parameter(j).field.neutral);
     }
     // The promise is held against the diagram itself, there, short of there and, where the line is bent, beyond.
-    double best = 0.0;
+    std::vector<VectorXd> settings;
     for (const double share : linear ? std::vector{1.0, 0.3, 0.1} : std::vector{1.0, 0.5, 0.1, 1.5, 2.2}) {
-      VectorXd there = shape;
+      VectorXd& there = settings.emplace_back(shape);
       for (const Index j : list) {
         there[j] += share * (values[j] - shape[j]);
       }
+    }
+    foresee(settings);
+    double best = 0.0;
+    for (const VectorXd& there : settings) {
       best = std::max(best, try_point(there, starts));
       if (best > 0.8 * gain) {
         break;
@@ -376,21 +286,36 @@ class Screening {
   void try_grid(const VectorXd& shape, const std::vector<Index>& list, std::vector<Start>& starts) {
     const bool limits =
         list.size() > 1 && std::ranges::all_of(list, [&](Index j) { return std::isinf(parameter(j).field.neutral); });
+    const auto at = [&](Index j, double value) {
+      VectorXd values = shape;
+      values[j] = value;
+      return values;
+    };
+    const auto has_other_side = [&](Index j) {
+      return points(j).size() < 5 && parameter(j).field.minimum < parameter(j).field.neutral;
+    };
+    const auto other_side = [&](Index j, double value) { return 2.0 * parameter(j).field.neutral - value; };
+    std::vector<VectorXd> settings;
+    for (const Index j : list) {
+      for (const double value : points(j)) {
+        settings.push_back(at(j, value));
+        if (has_other_side(j)) {
+          settings.push_back(at(j, other_side(j, value)));
+        }
+      }
+    }
+    foresee(settings);
     VectorXd each_at_its_best = shape;
     for (const Index j : list) {
-      const std::vector<double>& grid = points(j);
       double best = 0.0;
-      for (const double value : grid) {
-        VectorXd values = shape;
-        values[j] = value;
-        const double gain = try_point(values, starts);
+      for (const double value : points(j)) {
+        const double gain = try_point(at(j, value), starts);
         if (gain > best) {
           best = gain;
           each_at_its_best[j] = value;
         }
-        if (grid.size() < 5 && parameter(j).field.minimum < parameter(j).field.neutral) {
-          values[j] = 2.0 * parameter(j).field.neutral - value;
-          try_point(values, starts);
+        if (has_other_side(j)) {
+          try_point(at(j, other_side(j, value)), starts);
         }
       }
     }
@@ -421,7 +346,7 @@ class Screening {
     const bool rates = std::ranges::all_of(list, [&](Index j) { return parameter(j).role == Role::Rate; });
     const double ratio = rates ? points(further).front() / points(further).back() : 1.0;
     const double smaller = std::max(3.0, std::ceil(std::abs(std::log(ratio)) / (last * std::log(narrow_ratio))));
-    const auto gain_at = [&](double place) {
+    const auto settings_at = [&](double place) {
       VectorXd values = shape;
       for (const Index j : list) {
         const std::vector<double>& grid = points(about_zero ? further : j);
@@ -433,20 +358,25 @@ class Screening {
                                    : std::lerp(grid[below], grid[above], share);
         values[j] = about_zero ? std::copysign(value, points(j).front()) : value;
       }
-      return try_point(values, starts);
+      return values;
     };
     double best = 0.0;
     double gain = -std::numeric_limits<double>::infinity();
     const auto consider = [&](double place) {
-      if (const double here = gain_at(place); here > gain) {
+      if (const double here = try_point(settings_at(place), starts); here > gain) {
         gain = here;
         best = place;
       }
     };
+    std::vector<VectorXd> settings;
+    for (double k = 0.0; k <= smaller * last; ++k) {
+      settings.push_back(settings_at(k / smaller));
+    }
+    foresee(settings);
     for (double k = 0.0; k <= smaller * last; ++k) {
       consider(k / smaller);
     }
-    for (double step = 0.5 / smaller; gain > worth_narrowing * background_.unexplained() && step > 0.05; step *= 0.5) {
+    for (double step = 0.5 / smaller; gain > worth_narrowing * background().unexplained() && step > 0.05; step *= 0.5) {
       const double middle = best;
       for (const double place : {middle - step, middle + step}) {
         if (place > 0.0 && place < last) {
@@ -464,21 +394,11 @@ class Screening {
     }
     const VectorXd one = VectorXd::Ones(1);
     VectorXd alpha;
-    starts.push_back({.values = values, .gain = background_.gain(change, one, one, alpha)});
+    starts.push_back({.values = values, .gain = background().gain(change, one, one, alpha)});
     return starts.back().gain;
   }
 
-  const Grids& grids_;
-  const Background& background_;
-  Screened screened_{};
-  std::optional<Model> model_{};
-  Index parameters_ = 0;
-  Index first_ = 0;             ///< of the effect's unknowns in the model
-  std::vector<Index> free_{};   ///< the parameters that are unknowns
-  VectorXd neutral_{};          ///< by parameter: neutral, default or setting
-  VectorXd base_{};             ///< of the model's unknowns
-  bool grid_tried_ = false;     ///< once, also where straight lines are tried for each shape
-  std::vector<bool> linear_{};  ///< by strength
+  bool grid_tried_ = false;  ///< once, also where straight lines are tried for each shape
 };
 
 }  // namespace

@@ -46,11 +46,15 @@ void take_best_multiple(Model& model, Explanation& one) {
   const VectorXd shared = one.fit.x;
   double best = 0.0;  // octaves
   double least = std::numeric_limits<double>::infinity();
-  const auto try_octaves = [&](double octaves) {
+  const auto at_octaves = [&](double octaves) {
     VectorXd x = shared;
     for (const Index k : strengths) {
       x[k] = std::clamp(shared[k] * std::exp2(octaves), model.lower()[k], model.upper()[k]);
     }
+    return x;
+  };
+  const auto try_octaves = [&](double octaves) {
+    VectorXd x = at_octaves(octaves);
     VectorXd residuals;
     if (model.residuals(x, residuals) && residuals.squaredNorm() < least) {
       least = residuals.squaredNorm();
@@ -59,6 +63,11 @@ void take_best_multiple(Model& model, Explanation& one) {
     }
   };
   double step = 0.125;
+  std::vector<VectorXd> points;
+  for (int k = -12; k <= 16; ++k) {
+    points.push_back(at_octaves(step * k));
+  }
+  model.foresee(std::move(points));
   for (int k = -12; k <= 16; ++k) {
     try_octaves(step * k);
   }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <string>
 #include <utility>
@@ -158,6 +159,86 @@ TEST(Rollout, KeepsWhatStandsBeforeARestartToo) {
   problem.experiments[1].restarts = {40};
   expect_no_memory(problem, false);
   expect_no_memory(problem, true);
+}
+
+/// Points that differ in some unknowns are run side by side, then others: bits are those of each by itself.
+void expect_side_by_side(const OutputErrorProblem& problem) {
+  Rollout rollout(problem);
+  if (!rollout.can_run_side_by_side()) {
+    GTEST_SKIP() << "this processor has no registers of 512 bits";
+  }
+  VectorXd base = about_start(problem, rollout.unknowns());
+  std::mt19937_64 random(11);
+  for (int batch = 0; batch < 30; ++batch) {
+    const auto first = static_cast<Index>(random() % static_cast<std::uint64_t>(base.size()));
+    const Index last = std::min<Index>(first + static_cast<Index>(random() % 3), base.size() - 1);
+    std::vector<VectorXd> points(1 + random() % lane_count, base);
+    for (VectorXd& x : points) {
+      for (Index j = first; j <= last; ++j) {
+        x[j] *= 1.0 + 0.01 * static_cast<double>(random() % 20);
+      }
+    }
+    const auto lost = random() % (2 * points.size());
+    if (lost < points.size()) {
+      points[lost][first] = std::numeric_limits<double>::quiet_NaN();
+    }
+    const auto residuals = rollout.residuals_side_by_side(points);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      Rollout alone(problem);
+      VectorXd expected(alone.residual_count());
+      const bool has_value = alone.residuals(points[k], expected, nullptr);
+      ASSERT_EQ(residuals[k].has_value(), has_value) << batch;
+      ASSERT_TRUE(!has_value || same(*residuals[k], expected)) << batch;
+    }
+    if (batch % 3 == 2) {
+      VectorXd plain(rollout.residual_count());
+      base[first] *= 1.01;
+      ASSERT_TRUE(rollout.residuals(base, plain, nullptr));
+      ASSERT_TRUE(same(plain, fresh(problem, base))) << batch;
+    }
+  }
+}
+
+TEST(Rollout, SideBySideChangesNoBit) {
+  const Chosen all = parameters_of_chain();
+  expect_side_by_side(problem_of_chain(all));
+  expect_side_by_side(problem_of_chain({all[15], all.back()}, "[tune]\ninitial_states = [\"L6.RATE1\"]\n"));
+  OutputErrorProblem problem =
+      problem_of_chain({{"L8", "T1"}, {"PLAY", "WIDTH"}}, "[tune]\ninitial_states = [\"L7.RATE1\"]\n");
+  problem.experiments[0].restarts = {30, 70};
+  problem.experiments[1].restarts = {40};
+  expect_side_by_side(problem);
+}
+
+TEST(Rollout, WideRegistersChangeNoDerivative) {
+  if (!has_wide_registers()) {
+    GTEST_SKIP() << "this processor has no registers of 512 bits";
+  }
+  const OutputErrorProblem problem = problem_of_chain(parameters_of_chain());
+  const VectorXd x = about_start(problem, static_cast<Index>(problem.parameters.size()));
+  Machine<Dual<7>> narrow(problem.program, 0.01);
+  Machine<WideDual> wide(problem.program, 0.01);
+  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+    const double value = x[static_cast<Index>(j)];
+    const int direction = static_cast<int>(j % 7);
+    narrow.set_parameter(problem.parameters[j].parameter, Dual<7>::variable(value, direction));
+    wide.set_parameter(problem.parameters[j].parameter, WideDual::variable(value, direction));
+  }
+  narrow.reset();
+  wide.reset();
+  for (int k = 0; k < 200; ++k) {
+    const double u = std::sin(0.09 * k) + 0.3 * std::sin(0.41 * k);
+    narrow.set_input(0, u);
+    wide.set_input(0, u);
+    narrow.step();
+    wide.step();
+    for (std::size_t output = 0; output < 2; ++output) {
+      const Dual<7> expected = narrow.output(output);
+      const WideDual got = wide.output(output);
+      ASSERT_EQ(got.value(), expected.value()) << k;
+      ASSERT_EQ(got.gradient(), expected.gradient()) << k;
+    }
+  }
 }
 
 TEST(Reach, IsWhatReadsOfAParameterDirectlyOrThroughOthers) {

@@ -32,8 +32,8 @@ LoopState without_end(const Signal& impulse) {
 
 template <class Row>
 void keep_derivatives(const double& /*value*/, std::span<const Index> /*columns*/, double /*scale*/, Row&& /*row*/) {}
-template <int N, class Row>
-void keep_derivatives(const Dual<N>& value, std::span<const Index> columns, double scale, Row&& row) {
+template <int N, int W, class Row>
+void keep_derivatives(const Dual<N, W>& value, std::span<const Index> columns, double scale, Row&& row) {
   for (std::size_t k = 0; k < columns.size(); ++k) {
     row[columns[k]] = scale * value.derivative(static_cast<int>(k));
   }

@@ -1,0 +1,5 @@
+// The blocks over eight lanes, compiled for registers of 512 bits.
+#include "codegen/interpreter/lanes.hpp"
+#include "codegen/interpreter/run_table.hpp"
+
+template const hysteron::RunTable<hysteron::Lanes>& hysteron::run_table<hysteron::Lanes>();

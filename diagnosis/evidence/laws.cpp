@@ -30,12 +30,23 @@ constexpr double strengths_by_samples = 2e5;
 constexpr std::size_t fewest_points = 8;
 constexpr std::size_t most_points = 30;
 
+RecordSignals combined(const RecordSignals& a, double share_a, const RecordSignals& b, double share_b) {
+  RecordSignals result = a;
+  for (std::size_t e = 0; e < a.size(); ++e) {
+    for (std::size_t k = 0; k < a[e].size(); ++k) {
+      result[e][k] = share_a * a[e][k] + share_b * b[e][k];
+    }
+  }
+  return result;
+}
+
 /// A block by itself, on the signals that drive it.
 class Isolated {
  public:
+  /// `unsure` are deviations of the first driver, or null.
   Isolated(const EffectKind& kind, const RecordSignals& input, std::vector<const RecordSignals*> drivers,
-           double sample_time)
-      : input_(input), drivers_(std::move(drivers)) {
+           const RecordSignals* unsure, double sample_time)
+      : input_(input), drivers_(std::move(drivers)), unsure_(unsure) {
     std::string pins = fmt::format("{} : LREAL; ", kind.input);
     std::string call = fmt::format("{} := {}", kind.input, kind.input);
     for (std::size_t i = 0; i < drivers_.size(); ++i) {
@@ -56,8 +67,30 @@ class Isolated {
     }
   }
 
-  /// What it adds to its input; empty where that is not finite.
-  [[nodiscard]] RecordSignals added() {
+  /// What it adds to its input, in the middle and to either side of it; empty where that is not finite.
+  struct Added {
+    RecordSignals middle{};
+    RecordSignals slack{};  ///< empty: none
+  };
+  [[nodiscard]] Added added() {
+    if (unsure_ == nullptr) {
+      return {.middle = added_at(0.0)};
+    }
+    const RecordSignals low = added_at(-policy::unsure_speed.value);
+    const RecordSignals high = added_at(policy::unsure_speed.value);
+    if (low.empty() || high.empty()) {
+      return {};
+    }
+    Added result{.middle = combined(low, 0.5, high, 0.5), .slack = combined(high, 0.5, low, -0.5)};
+    for (Signal& one : result.slack) {
+      std::ranges::transform(one, one.begin(), [](double value) { return std::abs(value); });
+    }
+    return result;
+  }
+
+ private:
+  /// With the first driver so many deviations up.
+  [[nodiscard]] RecordSignals added_at(double deviations) {
     RecordSignals result;
     for (std::size_t e = 0; e < input_.size(); ++e) {
       machine_->reset();
@@ -65,7 +98,8 @@ class Isolated {
       for (std::size_t k = 0; k < input_[e].size(); ++k) {
         machine_->set_input(0, input_[e][k]);
         for (std::size_t i = 0; i < drivers_.size(); ++i) {
-          machine_->set_input(i + 1, (*drivers_[i])[e][k]);
+          const double off = i == 0 && unsure_ != nullptr ? deviations * (*unsure_)[e][k] : 0.0;
+          machine_->set_input(i + 1, (*drivers_[i])[e][k] + off);
         }
         machine_->step();
         result.back()[k] = machine_->output(0) - input_[e][k];
@@ -77,22 +111,12 @@ class Isolated {
     return result;
   }
 
- private:
   const RecordSignals& input_;
   std::vector<const RecordSignals*> drivers_;
+  const RecordSignals* unsure_;
   Program program_{};
   std::unique_ptr<Machine<double>> machine_{};
 };
-
-RecordSignals combined(const RecordSignals& a, double share_a, const RecordSignals& b, double share_b) {
-  RecordSignals result = a;
-  for (std::size_t e = 0; e < a.size(); ++e) {
-    for (std::size_t k = 0; k < a[e].size(); ++k) {
-      result[e][k] = share_a * a[e][k] + share_b * b[e][k];
-    }
-  }
-  return result;
-}
 
 double energy(const RecordSignals& signal) {
   double sum = 0.0;
@@ -108,6 +132,7 @@ double energy(const RecordSignals& signal) {
 struct Draft {
   Law law{};
   std::vector<RecordSignals> signals{};
+  std::vector<RecordSignals> slacks{};  ///< empty, or of each term
 };
 
 /// All settings of one effect on one edge with one set of drivers.
@@ -150,7 +175,7 @@ class Settings {
     return grids_.parameters[static_cast<std::size_t>(j)].values;
   }
 
-  [[nodiscard]] RecordSignals at(const VectorXd& values) {
+  [[nodiscard]] Isolated::Added at(const VectorXd& values) {
     for (Index j = 0; j < values.size(); ++j) {
       block_.set(parameter(j).name, values[j]);
     }
@@ -177,9 +202,10 @@ class Settings {
       const double step = points(j).back() - field.neutral;
       VectorXd values = shape;
       values[j] = field.neutral + step;
-      RecordSignals once = at(values);
+      Isolated::Added added = at(values);
+      RecordSignals& once = added.middle;
       values[j] = field.neutral + 0.5 * step;
-      const RecordSignals half = at(values);
+      const RecordSignals half = at(values).middle;
       if (once.empty() || half.empty()) {
         return std::nullopt;
       }
@@ -200,12 +226,15 @@ class Settings {
       std::erase_if(result.law.shape, [&](const auto& one) { return one.first == term.strength; });
       result.law.terms.push_back(std::move(term));
       result.signals.push_back(std::move(once));
+      if (!added.slack.empty()) {
+        result.slacks.push_back(std::move(added.slack));
+      }
     }
     return result;
   }
 
   void point(const VectorXd& values, std::vector<Draft>& result) {
-    RecordSignals signal = at(values);
+    RecordSignals signal = at(values).middle;
     if (signal.empty() || energy(signal) == 0.0) {
       return;
     }
@@ -298,6 +327,11 @@ Grids with_finer_durations(const Applied& effect, Grids grids) {
   return grids;
 }
 
+/// Whether it holds at rest: it has a travel from rest to sliding.
+bool slides(const EffectKind& kind) {
+  return kind.by_velocity && std::ranges::count(kind.parameters, "'v*s", &EffectParameter::unit) > 0;
+}
+
 struct Job {
   const EffectKind* kind = nullptr;
   std::size_t place = 0;
@@ -383,6 +417,10 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
       signals.push_back(&one->values);
       names.push_back(one->name);
     }
+    const RecordSignals* const unsure =
+        slides(*job.kind) && space.is_at_once() && !job.drivers.front()->deviations.empty()
+            ? &job.drivers.front()->deviations
+            : nullptr;
     const bool imposed = job.kind->by_velocity && !job.drivers.empty() && job.drivers.front()->is_imposed();
     for (const Candidate& guess : guesses) {
       std::vector<double> periods;
@@ -392,11 +430,12 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
       const Grids grids = with_finer_durations(
           guess.own(),
           grids_of(guess, extent, auxiliary, guess.own().has(Role::Frequency) ? free_hints : hints, periods));
-      Isolated block(*job.kind, input, signals, sample_time);
+      Isolated block(*job.kind, input, signals, unsure, sample_time);
       std::vector<Draft> drafts = Settings(*job.kind, guess, grids, block, imposed, points).list();
       std::vector<RecordSignals> all;
       for (Draft& draft : drafts) {
         std::ranges::move(draft.signals, std::back_inserter(all));
+        std::ranges::move(draft.slacks, std::back_inserter(all));
       }
       if (all.empty()) {
         continue;
@@ -413,6 +452,8 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
         draft.law.family = family_at(*job.kind, draft.law, hints.duration / static_cast<double>(blocks.count()));
         draft.law.responses = thin.middleCols(column, std::ssize(draft.law.terms));
         column += std::ssize(draft.law.terms);
+        draft.law.slacks = thin.middleCols(column, std::ssize(draft.slacks)).cwiseAbs();
+        column += std::ssize(draft.slacks);
         if (draft.law.responses.squaredNorm() > 0.0) {
           found[i].push_back(std::move(draft.law));
         }

@@ -20,7 +20,7 @@ struct Column {
   std::string unit{};  ///< as written in the header, `u [V]`; empty where none is given
   std::vector<double> values{};
   std::string in_file{};  ///< what the file calls it, where that is another name
-  double step = 0.0;      ///< the smallest one between two values as they were before resampling; 0: they are as they were
+  double step = 0.0;  ///< the smallest one between two values as they were before resampling; 0: they are as they were
   [[nodiscard]] const std::string& name_in_file() const { return in_file.empty() ? name : in_file; }
 };
 

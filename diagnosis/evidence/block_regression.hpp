@@ -2,10 +2,11 @@
 //
 //   minimise over δ, α   Σ_o Σ_k ((r + J δ + Σ D α)_ok / s_o)²
 //
-// J are the sensitivities of the known parameters, D the responses of the laws of a set. Where a law is only known to lie
-// within S|α| of D α, what lies within that is nothing: (|r + J δ + D α| − S|α|)₊ takes the place of the residual. For each
-// block the coefficients are found without it, and what they leave there is its held-out energy. The Gram matrices of
-// the blocks are formed once for a set, so that all these fits cost little more than one (Allen's PRESS, by blocks).
+// J are the sensitivities of the known parameters, D the responses of the laws of a set. Where a law is only known to
+// lie within S|α| of D α, what lies within that is nothing: (|r + J δ + D α| − S|α|)₊ takes the place of the residual.
+// For each block the coefficients are found without it, and what they leave there is its held-out energy. The Gram
+// matrices of the blocks are formed once for a set, so that all these fits cost little more than one (Allen's PRESS, by
+// blocks).
 #pragma once
 
 #include <span>

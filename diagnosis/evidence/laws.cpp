@@ -10,9 +10,9 @@
 #include <optional>
 
 #include "codegen/graph/definition.hpp"
-#include "codegen/interpreter/machine.hpp"
 #include "diagnosis/effects/grid_points.hpp"
 #include "diagnosis/evidence/driver_lines.hpp"
+#include "diagnosis/evidence/lone_block.hpp"
 #include "diagnosis/evidence/roles.hpp"
 #include "diagnosis/model/parallel.hpp"
 #include "diagnosis/noise/spectrum.hpp"
@@ -29,94 +29,6 @@ constexpr double share_high = 2.0;
 constexpr double strengths_by_samples = 2e5;
 constexpr std::size_t fewest_points = 8;
 constexpr std::size_t most_points = 30;
-
-RecordSignals combined(const RecordSignals& a, double share_a, const RecordSignals& b, double share_b) {
-  RecordSignals result = a;
-  for (std::size_t e = 0; e < a.size(); ++e) {
-    for (std::size_t k = 0; k < a[e].size(); ++k) {
-      result[e][k] = share_a * a[e][k] + share_b * b[e][k];
-    }
-  }
-  return result;
-}
-
-/// A block by itself, on the signals that drive it.
-class Isolated {
- public:
-  /// `unsure` are deviations of the first driver, or null.
-  Isolated(const EffectKind& kind, const RecordSignals& input, std::vector<const RecordSignals*> drivers,
-           const RecordSignals* unsure, double sample_time)
-      : input_(input), drivers_(std::move(drivers)), unsure_(unsure) {
-    std::string pins = fmt::format("{} : LREAL; ", kind.input);
-    std::string call = fmt::format("{} := {}", kind.input, kind.input);
-    for (std::size_t i = 0; i < drivers_.size(); ++i) {
-      pins += fmt::format("{} : LREAL; ", kind.auxiliaries[i]);
-      call += fmt::format(", {} := {}", kind.auxiliaries[i], kind.auxiliaries[i]);
-    }
-    program_ = compile_text(fmt::format("FUNCTION_BLOCK LAW VAR_INPUT {}END_VAR VAR_OUTPUT RESULT : LREAL; END_VAR VAR "
-                                        "E : {}; END_VAR E({}); RESULT := E.{}; END_FUNCTION_BLOCK",
-                                        pins, kind.block, call, kind.output),
-                            {.any_order = true});
-    machine_ = std::make_unique<Machine<double>>(program_, sample_time);
-  }
-
-  void set(std::string_view parameter, double value) {
-    const std::int64_t at = find_parameter(program_.graph, fmt::format("E.{}", parameter));
-    if (at >= 0) {
-      machine_->set_parameter(static_cast<std::size_t>(at), value);
-    }
-  }
-
-  /// What it adds to its input, in the middle and to either side of it; empty where that is not finite.
-  struct Added {
-    RecordSignals middle{};
-    RecordSignals slack{};  ///< empty: none
-  };
-  [[nodiscard]] Added added() {
-    if (unsure_ == nullptr) {
-      return {.middle = added_at(0.0)};
-    }
-    const RecordSignals low = added_at(-policy::unsure_speed.value);
-    const RecordSignals high = added_at(policy::unsure_speed.value);
-    if (low.empty() || high.empty()) {
-      return {};
-    }
-    Added result{.middle = combined(low, 0.5, high, 0.5), .slack = combined(high, 0.5, low, -0.5)};
-    for (Signal& one : result.slack) {
-      std::ranges::transform(one, one.begin(), [](double value) { return std::abs(value); });
-    }
-    return result;
-  }
-
- private:
-  /// With the first driver so many deviations up.
-  [[nodiscard]] RecordSignals added_at(double deviations) {
-    RecordSignals result;
-    for (std::size_t e = 0; e < input_.size(); ++e) {
-      machine_->reset();
-      result.emplace_back(input_[e].size());
-      for (std::size_t k = 0; k < input_[e].size(); ++k) {
-        machine_->set_input(0, input_[e][k]);
-        for (std::size_t i = 0; i < drivers_.size(); ++i) {
-          const double off = i == 0 && unsure_ != nullptr ? deviations * (*unsure_)[e][k] : 0.0;
-          machine_->set_input(i + 1, (*drivers_[i])[e][k] + off);
-        }
-        machine_->step();
-        result.back()[k] = machine_->output(0) - input_[e][k];
-        if (!std::isfinite(result.back()[k])) {
-          return {};
-        }
-      }
-    }
-    return result;
-  }
-
-  const RecordSignals& input_;
-  std::vector<const RecordSignals*> drivers_;
-  const RecordSignals* unsure_;
-  Program program_{};
-  std::unique_ptr<Machine<double>> machine_{};
-};
 
 double energy(const RecordSignals& signal) {
   double sum = 0.0;
@@ -138,7 +50,7 @@ struct Draft {
 /// All settings of one effect on one edge with one set of drivers.
 class Settings {
  public:
-  Settings(const EffectKind& kind, const Candidate& candidate, const Grids& grids, Isolated& block, bool both_ways,
+  Settings(const EffectKind& kind, const Candidate& candidate, const Grids& grids, LoneBlock& block, bool both_ways,
            std::size_t points)
       : kind_(kind), own_(candidate.own()), grids_(grids), block_(block), both_ways_(both_ways), points_(points) {
     neutral_.resize(std::ssize(own_.parameters));
@@ -175,7 +87,7 @@ class Settings {
     return grids_.parameters[static_cast<std::size_t>(j)].values;
   }
 
-  [[nodiscard]] Isolated::Added at(const VectorXd& values) {
+  [[nodiscard]] LoneBlock::Added at(const VectorXd& values) {
     for (Index j = 0; j < values.size(); ++j) {
       block_.set(parameter(j).name, values[j]);
     }
@@ -202,7 +114,7 @@ class Settings {
       const double step = points(j).back() - field.neutral;
       VectorXd values = shape;
       values[j] = field.neutral + step;
-      Isolated::Added added = at(values);
+      LoneBlock::Added added = at(values);
       RecordSignals& once = added.middle;
       values[j] = field.neutral + 0.5 * step;
       const RecordSignals half = at(values).middle;
@@ -273,7 +185,7 @@ class Settings {
   const EffectKind& kind_;
   const Applied& own_;
   const Grids& grids_;
-  Isolated& block_;
+  LoneBlock& block_;
   bool both_ways_;
   std::size_t points_;
   VectorXd neutral_{};
@@ -430,7 +342,7 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
       const Grids grids = with_finer_durations(
           guess.own(),
           grids_of(guess, extent, auxiliary, guess.own().has(Role::Frequency) ? free_hints : hints, periods));
-      Isolated block(*job.kind, input, signals, unsure, sample_time);
+      LoneBlock block(*job.kind, input, signals, unsure, sample_time);
       std::vector<Draft> drafts = Settings(*job.kind, guess, grids, block, imposed, points).list();
       std::vector<RecordSignals> all;
       for (Draft& draft : drafts) {

@@ -87,8 +87,7 @@ MatrixXd Smoother::deviations() const {
       known = (forward.transpose() * known * forward).eval();
     }
     const MatrixXd kept = MatrixXd::Identity(z, z) - gains_.middleCols(k * p, p) * shows;
-    known = (kept.transpose() * known * kept).eval() +
-            shows.transpose() * inverses_.middleCols(k * p, p) * shows;
+    known = (kept.transpose() * known * kept).eval() + shows.transpose() * inverses_.middleCols(k * p, p) * shows;
     const auto covariance = covariances_.middleCols(k * z, z);
     const MatrixXd smoothed = covariance - covariance * known * covariance;
     result.col(k) = (variance_ * smoothed.diagonal().cwiseMax(0.0)).cwiseSqrt();

@@ -128,8 +128,8 @@ TEST(Evidence, WithoutFrictionNoneIsSure) {
   }
 }
 
-/// The axis with a spring, and an encoder that resolves a hundredth of its stroke or less. Dry friction of a small drive
-/// holds it for most of the time; a dead zone in the drive lets it settle at zero.
+/// The axis with a spring, and an encoder that resolves a hundredth of its stroke or less. Dry friction of a small
+/// drive holds it for most of the time; a dead zone in the drive lets it settle at zero.
 constexpr std::string_view sprung_axis = R"(FUNCTION_BLOCK AXIS  (* @ts 5ms *)
   VAR_INPUT
     U : LREAL;  (* @unit V *)

@@ -64,6 +64,8 @@ inline constexpr Threshold another_place{
     0.0};
 inline constexpr Threshold draws{"draws", 2000.0, "1", "mathematics: 0.01 of standard error",
                                  "the draws of the bootstrap over blocks"};
+inline constexpr Threshold unsure_speed{"unsure speed", 2.0, "deviations", "mathematics: 95 % of a normal error",
+                                        "within which the sign of a speed, and with it a dry friction, is open"};
 inline constexpr Threshold quiet_slope{"quiet slope", 0.1, "1", "convention: noise a tenth of the slope",
                                        "how many samples a slope is taken over"};
 inline constexpr Threshold follower{"follower", 0.9, "1", "convention: nine tenths of its energy",
@@ -160,6 +162,7 @@ inline constexpr std::array all{work,
                                 model_error,
                                 another_place,
                                 draws,
+                                unsure_speed,
                                 quiet_slope,
                                 follower,
                                 same_signal,

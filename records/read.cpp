@@ -12,6 +12,7 @@
 
 #include "records/formats.hpp"
 #include "records/resample.hpp"
+#include "records/statistics.hpp"
 #include "records/table.hpp"
 #include "records/time/time_column.hpp"
 #include "records/time/time_grid.hpp"
@@ -234,6 +235,7 @@ Record record_of(Table table, const ReadOptions& options) {
       column.name += fmt::format(" ({})", i + 1);  // t is the time; this is a temperature or a torque
     }
     std::vector<double> values = std::move(column.values);
+    double step = 0.0;
     if (resample) {
       const auto own = std::ranges::find(times.own, i, &Times::Own::column);
       std::vector<double> at = own != times.own.end() ? own->seconds : times.seconds;
@@ -243,10 +245,15 @@ Record record_of(Table table, const ReadOptions& options) {
       }
       // A switch is on or off: nothing lies between.
       const Resampling way = column.kind == CellKind::Truth ? Resampling::Hold : options.resampling;
+      // A line between two values is no finer than they are; a mean of many may be.
+      step = way == Resampling::Average ? 0.0 : statistics_of(values).resolution;
       values = resampled(at, values, grid.seconds, way, cost);
     }
-    columns.push_back(
-        {.name = column.name, .unit = column.unit, .values = std::move(values), .in_file = column.in_file});
+    columns.push_back({.name = column.name,
+                       .unit = column.unit,
+                       .values = std::move(values),
+                       .in_file = column.in_file,
+                       .step = step});
   }
   if (table.source != nullptr) {
     for (std::size_t i = 0; i < table.columns.size(); ++i) {

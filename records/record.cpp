@@ -114,9 +114,13 @@ void Record::replace(std::string_view name, std::vector<double> values) {
   columns_[static_cast<std::size_t>(&column(name) - columns_.data())].values = std::move(values);
 }
 
-void Record::replace(std::string_view name, std::vector<double> values, std::string unit) {
-  replace(name, std::move(values));
-  columns_[static_cast<std::size_t>(&column(name) - columns_.data())].unit = std::move(unit);
+void Record::convert(std::string_view name, double factor, std::string unit) {
+  Column& converted = columns_[static_cast<std::size_t>(&column(name) - columns_.data())];
+  for (double& value : converted.values) {
+    value *= factor;
+  }
+  converted.step *= std::abs(factor);
+  converted.unit = std::move(unit);
 }
 
 void Record::remove(std::string_view name) {
@@ -138,7 +142,9 @@ Record Record::slice(RowRange rows) const {
   result.notes_ = notes_;
   result.time_name_ = time_name_;
   for (const Column& column : columns_) {
-    result.add({column.name, column.unit, cut(column.values), column.in_file});
+    Column part = column;
+    part.values = cut(column.values);
+    result.add(std::move(part));
   }
   return result;
 }

@@ -20,6 +20,7 @@ struct Column {
   std::string unit{};  ///< as written in the header, `u [V]`; empty where none is given
   std::vector<double> values{};
   std::string in_file{};  ///< what the file calls it, where that is another name
+  double step = 0.0;  ///< the smallest one between two values as they were before resampling; 0: they are as they were
   [[nodiscard]] const std::string& name_in_file() const { return in_file.empty() ? name : in_file; }
 };
 
@@ -66,8 +67,8 @@ class Record {
   /// Replaces the values of a column. Throws InputError HY502 where there is none, std::invalid_argument on another
   /// number of values.
   void replace(std::string_view name, std::vector<double> values);
-  /// The same in another unit.
-  void replace(std::string_view name, std::vector<double> values, std::string unit);
+  /// Brings a column to another unit: its numbers times `factor`. Throws InputError HY502 where there is none.
+  void convert(std::string_view name, double factor, std::string unit);
 
   /// Takes a column away, where there is one.
   void remove(std::string_view name);

@@ -133,9 +133,11 @@ std::string diagnosis_text(const Diagnosis& found) {
   if (found.rivals.size() > 1) {
     text += "  not ruled out:\n";
     for (const diagnosis::Rival& rival : found.rivals) {
-      text += fmt::format("    {:<44} {:.2f}\n",
-                          fmt::format("{} at {}", fmt::join(rival.effects, " + "), fmt::join(rival.edges, ", ")),
-                          rival.probability);
+      const std::string set =
+          rival.effects.empty()
+              ? "calibration alone"
+              : fmt::format("{} at {}", fmt::join(rival.effects, " + "), fmt::join(rival.edges, ", "));
+      text += fmt::format("    {:<44} {:.2f}\n", set, rival.probability);
     }
   }
   for (std::size_t i = 0; i < found.edges.size() && i < 5; ++i) {

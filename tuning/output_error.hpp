@@ -47,6 +47,7 @@ struct Experiment {
   std::vector<double> time{};
   Drive drive{};
   std::vector<Signal> measured{};  ///< by measured output
+  std::vector<double> steps{};     ///< of its values before these were resampled; 0: they are as they were
   /// Multiple shooting (Bock and Plitt, IFAC 1984): before these steps, ascending, the initial states take other values
   /// that are unknowns of their own. All else that the diagram remembers goes on.
   std::vector<std::size_t> restarts{};

@@ -133,7 +133,9 @@ class Builder {
                           .drive = drive_from(record, problem_.program, {}, diagnostics_)};
     for (const std::size_t output : problem_.outputs) {
       try {
-        experiment.measured.push_back(record.column(graph().outputs[output].name).values);
+        const records::Column& column = record.column(graph().outputs[output].name);
+        experiment.measured.push_back(column.values);
+        experiment.steps.push_back(column.step);
       } catch (const InputError& missing) {
         diagnostics_.add(missing.diagnostics().all().front());
       }

@@ -44,13 +44,9 @@ void convert(records::Record& record, const Graph& graph, const Port& port, Diag
   if (units::same_size(*factor, 1.0)) {
     return;
   }
-  std::vector<double> values = column->values;
-  for (double& value : values) {
-    value *= *factor;
-  }
   record.note(fmt::format("column {} is in {}, and was converted to {}: times {}", column->name, column->unit,
                           port.unit, number_text(*factor)));
-  record.replace(port.name, std::move(values), port.unit);
+  record.convert(port.name, *factor, port.unit);
 }
 
 }  // namespace

@@ -11,6 +11,8 @@ namespace {
 
 /// Of each column's own size: keeps a fit without a block solvable where a law acts in that block alone.
 constexpr double ridge = 1e-9;
+/// Within its slack a row tells nothing; which rows are, follows from the fit, and mostly stands after three.
+constexpr int rounds = 6;
 
 }  // namespace
 
@@ -27,96 +29,194 @@ BlockRegression::BlockRegression(const Blocks& blocks, VectorXd residuals, Matri
   }
 }
 
-BlockRegression::Score BlockRegression::with(std::span<const Law* const> laws, bool bounded) const {
-  const Index fixed = known_.cols();
-  Index size = fixed;
+BlockRegression::Terms BlockRegression::terms_of(std::span<const Law* const> laws, bool bounded) const {
+  Index size = 0;
+  bool slack = false;
   for (const Law* law : laws) {
     size += law->responses.cols();
+    slack = slack || law->slacks.cols() > 0;
   }
-  MatrixXd columns(residuals_.size(), size - fixed);
-  VectorXd low(size - fixed);
-  VectorXd high(size - fixed);
+  Terms terms{.columns = MatrixXd(residuals_.size(), size), .low = VectorXd(size), .high = VectorXd(size)};
+  if (slack) {
+    terms.slacks = MatrixXd::Zero(residuals_.size(), size);
+  }
   Index at = 0;
   for (const Law* law : laws) {
-    columns.middleCols(at, law->responses.cols()) = law->responses;
+    terms.columns.middleCols(at, law->responses.cols()) = law->responses;
+    if (law->slacks.cols() > 0) {
+      terms.slacks.middleCols(at, law->slacks.cols()) = law->slacks;
+    }
     for (const Law::Term& term : law->terms) {
-      low[at] = bounded ? term.lowest : -std::numeric_limits<double>::infinity();
-      high[at] = bounded ? term.highest : std::numeric_limits<double>::infinity();
+      terms.low[at] = bounded ? term.lowest : -std::numeric_limits<double>::infinity();
+      terms.high[at] = bounded ? term.highest : std::numeric_limits<double>::infinity();
       ++at;
     }
   }
-  const auto block_count = static_cast<Index>(blocks_.count());
+  return terms;
+}
+
+BlockRegression::Products BlockRegression::products_of(const MatrixXd& known, const MatrixXd& columns,
+                                                       const VectorXd& residuals, bool is_own) const {
+  const Index fixed = known.cols();
+  const Index size = fixed + columns.cols();
   const std::vector<Blocks::Run>& runs = blocks_.runs();
-  std::vector<MatrixXd> grams(runs.size());
-  std::vector<VectorXd> products(runs.size());
-  MatrixXd whole = MatrixXd::Zero(size, size);
-  VectorXd product = VectorXd::Zero(size);
-  std::vector<MatrixXd> of_block(blocks_.count(), MatrixXd::Zero(size, size));
-  std::vector<VectorXd> product_of_block(blocks_.count(), VectorXd::Zero(size));
+  Products result{.grams = std::vector<MatrixXd>(runs.size()),
+                  .products = std::vector<VectorXd>(runs.size()),
+                  .whole = MatrixXd::Zero(size, size),
+                  .product = VectorXd::Zero(size),
+                  .of_block = std::vector<MatrixXd>(blocks_.count(), MatrixXd::Zero(size, size)),
+                  .product_of_block = std::vector<VectorXd>(blocks_.count(), VectorXd::Zero(size))};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Blocks::Run& run = runs[i];
     const auto law_rows = columns.middleRows(run.first, run.size);
-    const auto known_rows = known_.middleRows(run.first, run.size);
-    const auto residual = residuals_.segment(run.first, run.size);
-    MatrixXd& gram = grams[i];
+    const auto known_rows = known.middleRows(run.first, run.size);
+    const auto residual = residuals.segment(run.first, run.size);
+    MatrixXd& gram = result.grams[i];
     gram.resize(size, size);
-    gram.topLeftCorner(fixed, fixed) = grams_[i];
+    if (is_own) {
+      gram.topLeftCorner(fixed, fixed) = grams_[i];
+    } else {
+      gram.topLeftCorner(fixed, fixed).noalias() = known_rows.transpose() * known_rows;
+    }
     gram.topRightCorner(fixed, size - fixed).noalias() = known_rows.transpose() * law_rows;
     gram.bottomLeftCorner(size - fixed, fixed) = gram.topRightCorner(fixed, size - fixed).transpose();
     gram.bottomRightCorner(size - fixed, size - fixed).noalias() = law_rows.transpose() * law_rows;
-    VectorXd& here = products[i];
+    VectorXd& here = result.products[i];
     here.resize(size);
     here.head(fixed).noalias() = known_rows.transpose() * residual;
     here.tail(size - fixed).noalias() = law_rows.transpose() * residual;
     const double weight = weights_[static_cast<Index>(run.output)];
-    whole += weight * gram;
-    product += weight * here;
-    of_block[run.block] += weight * gram;
-    product_of_block[run.block] += weight * here;
+    result.whole += weight * gram;
+    result.product += weight * here;
+    result.of_block[run.block] += weight * gram;
+    result.product_of_block[run.block] += weight * here;
   }
-  VectorXd diagonal = whole.diagonal() * ridge;
-  diagonal = diagonal.cwiseMax(1e-300);
-  const auto solved = [&](const MatrixXd& gram, const VectorXd& right) -> VectorXd {
-    MatrixXd matrix = gram;
-    matrix.diagonal() += diagonal;
-    return -matrix.ldlt().solve(right);
-  };
-  Score score{.held_out = MatrixXd::Zero(block_count, static_cast<Index>(blocks_.outputs()))};
-  const VectorXd all = solved(whole, product);
+  return result;
+}
+
+namespace {
+
+VectorXd solved(const MatrixXd& gram, const VectorXd& diagonal, const VectorXd& right) {
+  MatrixXd matrix = gram;
+  matrix.diagonal() += diagonal;
+  return -matrix.ldlt().solve(right);
+}
+
+VectorXd ridge_of(const MatrixXd& gram) {
+  return (gram.diagonal() * ridge).cwiseMax(1e-300);
+}
+
+/// What is left beyond a slack.
+double beyond(double left, double slack) {
+  return std::max(0.0, std::abs(left) - slack);
+}
+
+}  // namespace
+
+BlockRegression::Products BlockRegression::settled(const Terms& terms) const {
+  MatrixXd known = known_;
+  MatrixXd columns = terms.columns;
+  VectorXd residuals = residuals_;
+  const Index fixed = known_.cols();
+  Products products = products_of(known, columns, residuals, true);
+  std::vector<int> sides(static_cast<std::size_t>(residuals_.size()), 2);
+  for (int round = 0; round < rounds; ++round) {
+    const VectorXd all = solved(products.whole, ridge_of(products.whole), products.product);
+    if (!all.allFinite()) {
+      break;
+    }
+    bool moved = false;
+    const VectorXd left = residuals_ + known_ * all.head(fixed) + terms.columns * all.tail(terms.columns.cols());
+    const VectorXd slack = terms.slacks * all.tail(terms.columns.cols()).cwiseAbs();
+    for (Index row = 0; row < residuals_.size(); ++row) {
+      if ((terms.slacks.row(row).array() == 0.0).all()) {
+        continue;
+      }
+      const int side = std::abs(left[row]) <= slack[row] ? 0 : left[row] > 0.0 ? 1 : -1;
+      int& before = sides[static_cast<std::size_t>(row)];
+      if (side == before) {
+        continue;
+      }
+      before = side;
+      moved = true;
+      if (side == 0) {
+        known.row(row).setZero();
+        columns.row(row).setZero();
+        residuals[row] = 0.0;
+      } else {
+        known.row(row) = known_.row(row);
+        for (Index j = 0; j < columns.cols(); ++j) {
+          const double sign = all[fixed + j] < 0.0 ? -1.0 : 1.0;
+          columns(row, j) = terms.columns(row, j) - side * sign * terms.slacks(row, j);
+        }
+        residuals[row] = residuals_[row];
+      }
+    }
+    if (!moved) {
+      break;
+    }
+    products = products_of(known, columns, residuals, false);
+  }
+  return products;
+}
+
+BlockRegression::Score BlockRegression::with(std::span<const Law* const> laws, bool bounded) const {
+  const Terms terms = terms_of(laws, bounded);
+  const Index fixed = known_.cols();
+  const Index own = terms.columns.cols();
+  const bool slack = terms.slacks.cols() > 0;
+  const Products sums = slack ? settled(terms) : products_of(known_, terms.columns, residuals_, true);
+  const VectorXd diagonal = ridge_of(sums.whole);
+  Score score{.held_out = MatrixXd::Zero(static_cast<Index>(blocks_.count()), static_cast<Index>(blocks_.outputs()))};
+  const VectorXd all = solved(sums.whole, diagonal, sums.product);
   if (!all.allFinite()) {
     return score;
   }
   score.known = all.head(fixed);
-  score.shares = all.tail(size - fixed);
-  score.allowed = (score.shares.array() >= low.array()).all() && (score.shares.array() <= high.array()).all();
+  score.shares = all.tail(own);
+  score.allowed =
+      (score.shares.array() >= terms.low.array()).all() && (score.shares.array() <= terms.high.array()).all();
   if (!score.allowed) {
     return score;
   }
   std::vector<VectorXd> without(blocks_.count());
   for (std::size_t b = 0; b < blocks_.count(); ++b) {
-    without[b] = solved(whole - of_block[b], product - product_of_block[b]);
+    without[b] = solved(sums.whole - sums.of_block[b], diagonal, sums.product - sums.product_of_block[b]);
     // A part that acts in this block alone is 0 elsewhere; of bounded shares no fit may leave its bounds.
-    without[b].tail(size - fixed) = without[b].tail(size - fixed).cwiseMax(low).cwiseMin(high);
+    without[b].tail(own) = without[b].tail(own).cwiseMax(terms.low).cwiseMin(terms.high);
     if (!without[b].allFinite()) {
       score.allowed = false;
       return score;
     }
   }
   const auto count = static_cast<double>(without.size());
-  VectorXd mean = VectorXd::Zero(size);
+  VectorXd mean = VectorXd::Zero(fixed + own);
   for (const VectorXd& one : without) {
     mean += one / count;
   }
-  score.errors = VectorXd::Zero(size - fixed);
+  score.errors = VectorXd::Zero(own);
   for (const VectorXd& one : without) {
-    score.errors += (one - mean).tail(size - fixed).cwiseAbs2();
+    score.errors += (one - mean).tail(own).cwiseAbs2();
   }
   score.errors = (score.errors * ((count - 1.0) / count)).cwiseSqrt();
+  const std::vector<Blocks::Run>& runs = blocks_.runs();
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const VectorXd& c = without[runs[i].block];
-    const double energy =
-        residuals_.segment(runs[i].first, runs[i].size).squaredNorm() + 2.0 * c.dot(products[i]) + c.dot(grams[i] * c);
-    score.held_out(static_cast<Index>(runs[i].block), static_cast<Index>(runs[i].output)) += std::max(0.0, energy);
+    const Blocks::Run& run = runs[i];
+    const VectorXd& c = without[run.block];
+    double energy = 0.0;
+    if (slack) {
+      const VectorXd left = residuals_.segment(run.first, run.size) +
+                            known_.middleRows(run.first, run.size) * c.head(fixed) +
+                            terms.columns.middleRows(run.first, run.size) * c.tail(own);
+      const VectorXd free = terms.slacks.middleRows(run.first, run.size) * c.tail(own).cwiseAbs();
+      for (Index row = 0; row < run.size; ++row) {
+        energy += beyond(left[row], free[row]) * beyond(left[row], free[row]);
+      }
+    } else {
+      energy = residuals_.segment(run.first, run.size).squaredNorm() + 2.0 * c.dot(sums.products[i]) +
+               c.dot(sums.grams[i] * c);
+    }
+    score.held_out(static_cast<Index>(run.block), static_cast<Index>(run.output)) += std::max(0.0, energy);
   }
   return score;
 }

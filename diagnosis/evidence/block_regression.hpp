@@ -2,9 +2,11 @@
 //
 //   minimise over δ, α   Σ_o Σ_k ((r + J δ + Σ D α)_ok / s_o)²
 //
-// J are the sensitivities of the known parameters D the responses of the laws of a set. For each
-// block the coefficients are found without it, and what they leave there is its held-out energy. The Gram matrices of
-// the blocks are formed once for a set, so that all these fits cost little more than one (Allen's PRESS, by blocks).
+// J are the sensitivities of the known parameters, D the responses of the laws of a set. Where a law is only known to
+// lie within S|α| of D α, what lies within that is nothing: (|r + J δ + D α| − S|α|)₊ takes the place of the residual.
+// For each block the coefficients are found without it, and what they leave there is its held-out energy. The Gram
+// matrices of the blocks are formed once for a set, so that all these fits cost little more than one (Allen's PRESS, by
+// blocks).
 #pragma once
 
 #include <span>
@@ -46,6 +48,29 @@ class BlockRegression {
   [[nodiscard]] double log_square(const MatrixXd& held_out) const;
 
  private:
+  /// Of a set: its columns with their bounds, and what is free to either side; no slacks where none is.
+  struct Terms {
+    MatrixXd columns{};
+    MatrixXd slacks{};
+    VectorXd low{};
+    VectorXd high{};
+  };
+  /// Gram matrices and products of a fit: by run, whole and by block.
+  struct Products {
+    std::vector<MatrixXd> grams{};
+    std::vector<VectorXd> products{};
+    MatrixXd whole{};
+    VectorXd product{};
+    std::vector<MatrixXd> of_block{};
+    std::vector<VectorXd> product_of_block{};
+  };
+  [[nodiscard]] Terms terms_of(std::span<const Law* const> laws, bool bounded) const;
+  /// `is_own`: the known columns are those of the task.
+  [[nodiscard]] Products products_of(const MatrixXd& known, const MatrixXd& columns, const VectorXd& residuals,
+                                     bool is_own) const;
+  /// Of the rows that lie out of their slack, from its edge: a convex fit by an active set.
+  [[nodiscard]] Products settled(const Terms& terms) const;
+
   const Blocks& blocks_;
   VectorXd residuals_;
   MatrixXd known_;

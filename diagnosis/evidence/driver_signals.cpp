@@ -123,12 +123,16 @@ void add(std::vector<DriverSignal>& list, DriverSignal signal, RecordSignals val
   if (!(signal.extent.range() > 0.0)) {
     return;
   }
+  Rates rates = rates_of(values, sample_time);
   DriverSignal rate{.name = signal.name + "'",
                     .source = signal.source,
                     .is_rate = true,
                     .unit = rate_unit(signal.unit),
                     .of_unit = signal.unit,
-                    .values = rates_of(values, sample_time)};
+                    .values = std::move(rates.values)};
+  for (const Signal& one : rate.values) {
+    rate.deviations.emplace_back(one.size(), rates.deviation);
+  }
   rate.extent = extent_of(rate.values, sample_time);
   signal.values = std::move(values);
   for (DriverSignal* one : {&signal, &rate}) {
@@ -140,17 +144,17 @@ void add(std::vector<DriverSignal>& list, DriverSignal signal, RecordSignals val
 
 }  // namespace
 
-RecordSignals rates_of(const RecordSignals& values, double sample_time) {
+Rates rates_of(const RecordSignals& values, double sample_time) {
   const double noise = noise_of(values);
-  RecordSignals result;
+  Rates result;
   for (std::size_t half = 1; half <= widest; half *= 2) {
-    result.clear();
+    result.values.clear();
     for (const Signal& one : values) {
-      result.push_back(slope(one, half, sample_time));
+      result.values.push_back(slope(one, half, sample_time));
     }
     const auto h = static_cast<double>(half);
-    const double of_noise = noise / (sample_time * std::sqrt(h * (h + 1.0) * (2.0 * h + 1.0) / 3.0));
-    if (of_noise <= policy::quiet_slope.value * rms(result)) {
+    result.deviation = noise / (sample_time * std::sqrt(h * (h + 1.0) * (2.0 * h + 1.0) / 3.0));
+    if (result.deviation <= policy::quiet_slope.value * rms(result.values)) {
       break;
     }
   }
@@ -219,9 +223,14 @@ InnerSignals inner_signals(const Task& task, const Program& program) {
 }
 
 void add_inner(std::vector<DriverSignal>& drivers, const InnerSignals& inner, std::vector<RecordSignals> values,
-               double sample_time) {
+               double sample_time, std::vector<RecordSignals> deviations) {
+  deviations.resize(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    add(drivers, {.name = inner.names[i], .source = DriverSignal::Source::Wire, .unit = inner.units[i]},
+    add(drivers,
+        {.name = inner.names[i],
+         .source = DriverSignal::Source::Wire,
+         .unit = inner.units[i],
+         .deviations = std::move(deviations[i])},
         std::move(values[i]), sample_time);
   }
 }

@@ -26,6 +26,7 @@ struct DriverSignal {
   std::string unit{};        ///< empty where it is not known
   std::string of_unit{};     ///< of a rate: of what it is the rate
   RecordSignals values{};
+  RecordSignals deviations{};  ///< standard ones, of what was found from measured values, as a slope; else empty
   Extent extent{};
   /// What moves without regard to the diagram: an input, or the rate of one.
   [[nodiscard]] bool is_imposed() const { return source == Source::Input || source == Source::Column; }
@@ -36,7 +37,11 @@ struct DriverSignal {
 
 /// The slope of a signal in each sample: of a straight line through the samples to either side, as few as bring the
 /// noise of the slope below a tenth of the slope itself. In the signal's unit a second.
-[[nodiscard]] RecordSignals rates_of(const RecordSignals& values, double sample_time);
+struct Rates {
+  RecordSignals values{};
+  double deviation = 0.0;  ///< that the noise gives a slope
+};
+[[nodiscard]] Rates rates_of(const RecordSignals& values, double sample_time);
 
 /// Inputs, measured outputs and unused columns, each with its rate.
 [[nodiscard]] std::vector<DriverSignal> measured_signals(const Task& task, const Program& program,
@@ -50,8 +55,8 @@ struct InnerSignals {
 };
 [[nodiscard]] InnerSignals inner_signals(const Task& task, const Program& program);
 
-/// Appends them, with their values.
+/// Appends them, with their values and, where these are known, the standard deviations.
 void add_inner(std::vector<DriverSignal>& drivers, const InnerSignals& inner, std::vector<RecordSignals> values,
-               double sample_time);
+               double sample_time, std::vector<RecordSignals> deviations = {});
 
 }  // namespace hysteron::diagnosis

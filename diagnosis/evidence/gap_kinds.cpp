@@ -123,7 +123,7 @@ KindSignals signals_at(const Space::Place& place, const std::vector<DriverSignal
     of(result, GapKind::Static).push_back(mapped(rate, [](double v) { return v * std::abs(v); }));
     of(result, GapKind::Linear).push_back(rate);
   };
-  if (const RecordSignals rate = sized(rates_of(place.carried, sample_time)); !rate.empty()) {
+  if (const RecordSignals rate = sized(rates_of(place.carried, sample_time).values); !rate.empty()) {
     add_rate(rate);
   }
   for (const DriverSignal& driver : drivers) {

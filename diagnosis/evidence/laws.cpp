@@ -10,9 +10,9 @@
 #include <optional>
 
 #include "codegen/graph/definition.hpp"
-#include "codegen/interpreter/machine.hpp"
 #include "diagnosis/effects/grid_points.hpp"
 #include "diagnosis/evidence/driver_lines.hpp"
+#include "diagnosis/evidence/lone_block.hpp"
 #include "diagnosis/evidence/roles.hpp"
 #include "diagnosis/model/parallel.hpp"
 #include "diagnosis/noise/spectrum.hpp"
@@ -30,70 +30,6 @@ constexpr double strengths_by_samples = 2e5;
 constexpr std::size_t fewest_points = 8;
 constexpr std::size_t most_points = 30;
 
-/// A block by itself, on the signals that drive it.
-class Isolated {
- public:
-  Isolated(const EffectKind& kind, const RecordSignals& input, std::vector<const RecordSignals*> drivers,
-           double sample_time)
-      : input_(input), drivers_(std::move(drivers)) {
-    std::string pins = fmt::format("{} : LREAL; ", kind.input);
-    std::string call = fmt::format("{} := {}", kind.input, kind.input);
-    for (std::size_t i = 0; i < drivers_.size(); ++i) {
-      pins += fmt::format("{} : LREAL; ", kind.auxiliaries[i]);
-      call += fmt::format(", {} := {}", kind.auxiliaries[i], kind.auxiliaries[i]);
-    }
-    program_ = compile_text(fmt::format("FUNCTION_BLOCK LAW VAR_INPUT {}END_VAR VAR_OUTPUT RESULT : LREAL; END_VAR VAR "
-                                        "E : {}; END_VAR E({}); RESULT := E.{}; END_FUNCTION_BLOCK",
-                                        pins, kind.block, call, kind.output),
-                            {.any_order = true});
-    machine_ = std::make_unique<Machine<double>>(program_, sample_time);
-  }
-
-  void set(std::string_view parameter, double value) {
-    const std::int64_t at = find_parameter(program_.graph, fmt::format("E.{}", parameter));
-    if (at >= 0) {
-      machine_->set_parameter(static_cast<std::size_t>(at), value);
-    }
-  }
-
-  /// What it adds to its input; empty where that is not finite.
-  [[nodiscard]] RecordSignals added() {
-    RecordSignals result;
-    for (std::size_t e = 0; e < input_.size(); ++e) {
-      machine_->reset();
-      result.emplace_back(input_[e].size());
-      for (std::size_t k = 0; k < input_[e].size(); ++k) {
-        machine_->set_input(0, input_[e][k]);
-        for (std::size_t i = 0; i < drivers_.size(); ++i) {
-          machine_->set_input(i + 1, (*drivers_[i])[e][k]);
-        }
-        machine_->step();
-        result.back()[k] = machine_->output(0) - input_[e][k];
-        if (!std::isfinite(result.back()[k])) {
-          return {};
-        }
-      }
-    }
-    return result;
-  }
-
- private:
-  const RecordSignals& input_;
-  std::vector<const RecordSignals*> drivers_;
-  Program program_{};
-  std::unique_ptr<Machine<double>> machine_{};
-};
-
-RecordSignals combined(const RecordSignals& a, double share_a, const RecordSignals& b, double share_b) {
-  RecordSignals result = a;
-  for (std::size_t e = 0; e < a.size(); ++e) {
-    for (std::size_t k = 0; k < a[e].size(); ++k) {
-      result[e][k] = share_a * a[e][k] + share_b * b[e][k];
-    }
-  }
-  return result;
-}
-
 double energy(const RecordSignals& signal) {
   double sum = 0.0;
   for (const Signal& one : signal) {
@@ -108,12 +44,13 @@ double energy(const RecordSignals& signal) {
 struct Draft {
   Law law{};
   std::vector<RecordSignals> signals{};
+  std::vector<RecordSignals> slacks{};  ///< empty, or of each term
 };
 
 /// All settings of one effect on one edge with one set of drivers.
 class Settings {
  public:
-  Settings(const EffectKind& kind, const Candidate& candidate, const Grids& grids, Isolated& block, bool both_ways,
+  Settings(const EffectKind& kind, const Candidate& candidate, const Grids& grids, LoneBlock& block, bool both_ways,
            std::size_t points)
       : kind_(kind), own_(candidate.own()), grids_(grids), block_(block), both_ways_(both_ways), points_(points) {
     neutral_.resize(std::ssize(own_.parameters));
@@ -150,7 +87,7 @@ class Settings {
     return grids_.parameters[static_cast<std::size_t>(j)].values;
   }
 
-  [[nodiscard]] RecordSignals at(const VectorXd& values) {
+  [[nodiscard]] LoneBlock::Added at(const VectorXd& values) {
     for (Index j = 0; j < values.size(); ++j) {
       block_.set(parameter(j).name, values[j]);
     }
@@ -177,9 +114,10 @@ class Settings {
       const double step = points(j).back() - field.neutral;
       VectorXd values = shape;
       values[j] = field.neutral + step;
-      RecordSignals once = at(values);
+      LoneBlock::Added added = at(values);
+      RecordSignals& once = added.middle;
       values[j] = field.neutral + 0.5 * step;
-      const RecordSignals half = at(values);
+      const RecordSignals half = at(values).middle;
       if (once.empty() || half.empty()) {
         return std::nullopt;
       }
@@ -200,12 +138,15 @@ class Settings {
       std::erase_if(result.law.shape, [&](const auto& one) { return one.first == term.strength; });
       result.law.terms.push_back(std::move(term));
       result.signals.push_back(std::move(once));
+      if (!added.slack.empty()) {
+        result.slacks.push_back(std::move(added.slack));
+      }
     }
     return result;
   }
 
   void point(const VectorXd& values, std::vector<Draft>& result) {
-    RecordSignals signal = at(values);
+    RecordSignals signal = at(values).middle;
     if (signal.empty() || energy(signal) == 0.0) {
       return;
     }
@@ -244,7 +185,7 @@ class Settings {
   const EffectKind& kind_;
   const Applied& own_;
   const Grids& grids_;
-  Isolated& block_;
+  LoneBlock& block_;
   bool both_ways_;
   std::size_t points_;
   VectorXd neutral_{};
@@ -296,6 +237,11 @@ Grids with_finer_durations(const Applied& effect, Grids grids) {
     values = std::move(finer);
   }
   return grids;
+}
+
+/// Whether it holds at rest: it has a travel from rest to sliding.
+bool slides(const EffectKind& kind) {
+  return kind.by_velocity && std::ranges::count(kind.parameters, "'v*s", &EffectParameter::unit) > 0;
 }
 
 struct Job {
@@ -383,6 +329,10 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
       signals.push_back(&one->values);
       names.push_back(one->name);
     }
+    const RecordSignals* const unsure =
+        slides(*job.kind) && space.is_at_once() && !job.drivers.front()->deviations.empty()
+            ? &job.drivers.front()->deviations
+            : nullptr;
     const bool imposed = job.kind->by_velocity && !job.drivers.empty() && job.drivers.front()->is_imposed();
     for (const Candidate& guess : guesses) {
       std::vector<double> periods;
@@ -392,11 +342,12 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
       const Grids grids = with_finer_durations(
           guess.own(),
           grids_of(guess, extent, auxiliary, guess.own().has(Role::Frequency) ? free_hints : hints, periods));
-      Isolated block(*job.kind, input, signals, sample_time);
+      LoneBlock block(*job.kind, input, signals, unsure, sample_time);
       std::vector<Draft> drafts = Settings(*job.kind, guess, grids, block, imposed, points).list();
       std::vector<RecordSignals> all;
       for (Draft& draft : drafts) {
         std::ranges::move(draft.signals, std::back_inserter(all));
+        std::ranges::move(draft.slacks, std::back_inserter(all));
       }
       if (all.empty()) {
         continue;
@@ -413,6 +364,8 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
         draft.law.family = family_at(*job.kind, draft.law, hints.duration / static_cast<double>(blocks.count()));
         draft.law.responses = thin.middleCols(column, std::ssize(draft.law.terms));
         column += std::ssize(draft.law.terms);
+        draft.law.slacks = thin.middleCols(column, std::ssize(draft.slacks)).cwiseAbs();
+        column += std::ssize(draft.slacks);
         if (draft.law.responses.squaredNorm() > 0.0) {
           found[i].push_back(std::move(draft.law));
         }

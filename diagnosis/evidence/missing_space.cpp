@@ -162,16 +162,24 @@ bool MissingSpace::solve(const Explanation& fitted, const std::vector<std::strin
     listed.units.push_back(port.unit);
   }
   std::vector<RecordSignals> values(wires.size());
+  std::vector<RecordSignals> deviations(wires.size());
   for (std::size_t e = 0; e < records; ++e) {
     std::vector<Signal> along = run.wires_along(e, courses_[e], wires);
+    TangentRun::Course raised = courses_[e];
+    raised.states += smoothers_[e].deviations().topRows(std::ssize(states));
+    std::vector<Signal> raised_along = run.wires_along(e, raised, wires);
     for (std::size_t i = 0; i < wires.size(); ++i) {
+      for (std::size_t k = 0; k < along[i].size(); ++k) {
+        raised_along[i][k] = std::abs(raised_along[i][k] - along[i][k]);
+      }
+      deviations[i].push_back(std::move(raised_along[i]));
       values[i].push_back(std::move(along[i]));
     }
   }
   Task inputs_only = task_;
   inputs_only.outputs.clear();
   drivers_ = measured_signals(inputs_only, program, unused);
-  add_inner(drivers_, listed, std::move(values), task_.records.front().sample_time());
+  add_inner(drivers_, listed, std::move(values), task_.records.front().sample_time(), std::move(deviations));
 
   Index rows = 0;
   for (const TangentRun::Course& course : courses_) {

@@ -31,6 +31,7 @@ class MissingSpace : public Space {
   [[nodiscard]] const std::vector<DriverSignal>& drivers() const override { return drivers_; }
   [[nodiscard]] const VectorXd& residuals() const override { return missing_; }
   [[nodiscard]] const MatrixXd& known() const override { return known_; }
+  [[nodiscard]] bool is_at_once() const override { return true; }
   [[nodiscard]] MatrixXd of(std::size_t place, std::span<const RecordSignals> signals) const override;
 
   [[nodiscard]] double smoothness() const { return step_; }

@@ -46,7 +46,8 @@ Smoother::Smoother(const LinearSystem& system, double step) : system_(system) {
     covariance = 0.5 * (covariance + covariance.transpose().eval());
   }
   const auto samples = static_cast<double>(steps * p);
-  log_likelihood_ = -0.5 * determinants - 0.5 * samples * std::log(std::max(squares / samples, 1e-300));
+  variance_ = std::max(squares / samples, 1e-300);
+  log_likelihood_ = -0.5 * determinants - 0.5 * samples * std::log(variance_);
 }
 
 MatrixXd Smoother::smoothed() const {
@@ -67,6 +68,29 @@ MatrixXd Smoother::smoothed() const {
     const VectorXd taken = gains_.middleCols(k * p, p).transpose() * adjoint;
     adjoint -= shows.transpose() * (weighed + taken);
     result.col(k) = predicted_.col(k) - covariances_.middleCols(k * z, z) * adjoint;
+  }
+  return result;
+}
+
+MatrixXd Smoother::deviations() const {
+  const Index n = system_.states;
+  const Index z = n + 1;
+  const Index p = system_.outputs;
+  MatrixXd result(z, system_.steps());
+  MatrixXd known = MatrixXd::Zero(z, z);  // of the adjoint: what the samples from here on tell
+  MatrixXd forward = MatrixXd::Identity(z, z);
+  for (Index k = system_.steps() - 1; k >= 0; --k) {
+    const auto slopes = system_.a.middleCols(k * z, z);
+    const auto shows = slopes.bottomRows(p);
+    forward.topRows(n) = slopes.topRows(n);
+    if (k + 1 < system_.steps()) {
+      known = (forward.transpose() * known * forward).eval();
+    }
+    const MatrixXd kept = MatrixXd::Identity(z, z) - gains_.middleCols(k * p, p) * shows;
+    known = (kept.transpose() * known * kept).eval() + shows.transpose() * inverses_.middleCols(k * p, p) * shows;
+    const auto covariance = covariances_.middleCols(k * z, z);
+    const MatrixXd smoothed = covariance - covariance * known * covariance;
+    result.col(k) = (variance_ * smoothed.diagonal().cwiseMax(0.0)).cwiseSqrt();
   }
   return result;
 }

@@ -37,6 +37,9 @@ class Smoother {
   /// States and w over the steps.
   [[nodiscard]] MatrixXd smoothed() const;
 
+  /// Their standard deviations, with σ at its best.
+  [[nodiscard]] MatrixXd deviations() const;
+
   /// What w becomes where known signals enter (d, e) by `ways`, (states + outputs) × steps, and nothing is measured:
   /// steps × signals.
   [[nodiscard]] MatrixXd missing_for(const MatrixXd& ways, const MatrixXd& signals) const;
@@ -50,6 +53,7 @@ class Smoother {
   MatrixXd predicted_{};    ///< z × steps
   MatrixXd innovations_{};
   double log_likelihood_ = 0.0;
+  double variance_ = 0.0;  ///< σ²
 };
 
 }  // namespace hysteron::diagnosis

@@ -37,6 +37,8 @@ class Space {
   [[nodiscard]] virtual const VectorXd& residuals() const = 0;
   /// How it changes with the known parameters.
   [[nodiscard]] virtual const MatrixXd& known() const = 0;
+  /// Whether it changes with a signal there and then, and not for long after.
+  [[nodiscard]] virtual bool is_at_once() const { return false; }
   /// How it changes with signals that are added at a place: a column each. Empty where one is not finite.
   [[nodiscard]] virtual MatrixXd of(std::size_t place, std::span<const RecordSignals> signals) const = 0;
 };

@@ -266,7 +266,8 @@ NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t o
     count += static_cast<double>(values.size());
     const auto [low, high] = std::ranges::minmax(values);
     range = std::max(range, high - low);
-    quanta.push_back(smallest_step(values));
+    const double before = output < experiment.steps.size() ? experiment.steps[output] : 0.0;
+    quanta.push_back(before > 0.0 ? before : smallest_step(values));
     const double off = noise_off_steps(values);
     on_steps = on_steps && off > 0.0;
     off_steps += off * off * static_cast<double>(values.size());

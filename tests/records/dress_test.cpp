@@ -230,6 +230,19 @@ TEST(Dress, UnevenTimesAreBroughtToAnEvenGrid) {
   EXPECT_THAT(mean.column("u").values, ElementsAre(0.0, 20.0, 40.0));
 }
 
+/// A line between two readings of an encoder hides its step, and makes it no finer.
+TEST(Dress, TheStepOfAColumnOutlivesItsResampling) {
+  const std::string text = "t,u\n0,0\n1,10\n2.5,20\n3,30\n4,40\n";
+  EXPECT_EQ(parse_record("log.csv", "t,u\n0,0\n1,10\n2,20\n3,30\n").column("u").step, 0.0);
+  Record linear = parse_record("log.csv", text, {.resampling = Resampling::Linear});
+  EXPECT_EQ(linear.column("u").step, 10.0);
+  EXPECT_EQ(linear.slice({.first = 1, .last = 3}).column("u").step, 10.0);
+  linear.convert("u", -0.001, "V");
+  EXPECT_EQ(linear.column("u").step, 0.01);
+  EXPECT_EQ(linear.column("u").values.back(), -0.04);
+  EXPECT_EQ(parse_record("log.csv", text, {.resampling = Resampling::Average}).column("u").step, 0.0);
+}
+
 /// A mean over samples on both sides is late by nothing: of a ramp it is the ramp.
 TEST(Dress, TheMeanOfARampIsTheRamp) {
   for (const int times : {2, 3, 5, 10}) {

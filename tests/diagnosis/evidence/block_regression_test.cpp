@@ -57,6 +57,58 @@ TEST(BlockRegression, TheHeldOutEnergyIsThatOfAFitWithoutTheBlock) {
   }
 }
 
+/// A force that is missing where a machine with dry friction of level 2 moves, and where it rests under a drive that
+/// rises and falls between −2 and 2: what holds it there is no function of its speed.
+struct SlidesAndRests {
+  explicit SlidesAndRests(std::size_t samples)
+      : task(one_output(samples)), blocks(task, 1, 6, 1000), missing(samples), jump(samples) {
+    law = free_law(VectorXd::Zero(static_cast<Index>(samples)));
+    law.terms.front().lowest = 0.0;
+    law.slacks = MatrixXd::Zero(static_cast<Index>(samples), 1);
+    for (Index k = 0; k < missing.size(); ++k) {
+      const bool rests = k % 10 < 5;
+      jump[k] = k % 20 < 10 ? 1.0 : -1.0;
+      const double held = 1.9 * std::sin(0.7 * static_cast<double>(k));
+      missing[k] = rests ? held : -2.0 * jump[k];
+      law.responses(k, 0) = rests ? 0.0 : jump[k];
+      law.slacks(k, 0) = rests ? 1.0 : 0.0;
+    }
+  }
+  Task task;
+  Blocks blocks;
+  VectorXd missing;
+  VectorXd jump;
+  Law law{};
+};
+
+TEST(BlockRegression, WhatLiesWithinTheSlackOfALawIsNotLeft) {
+  const SlidesAndRests machine(120);
+  const BlockRegression regression(machine.blocks, machine.missing, MatrixXd(120, 0));
+  const Law* const laws[] = {&machine.law};
+  const BlockRegression::Score score = regression.with(laws);
+  ASSERT_TRUE(score.allowed);
+  EXPECT_NEAR(score.shares[0], 2.0, 1e-7);
+  EXPECT_LT(score.held_out.sum(), 1e-12);
+  Law sharp = machine.law;
+  sharp.responses = machine.jump;
+  sharp.slacks.resize(0, 0);
+  const Law* const sharp_laws[] = {&sharp};
+  EXPECT_GT(regression.with(sharp_laws).held_out.sum(), 0.5 * machine.missing.squaredNorm());
+}
+
+TEST(BlockRegression, WhatIsBeyondTheSlackCountsFromItsEdge) {
+  SlidesAndRests machine(120);
+  machine.missing[12] = 2.7;  // at rest
+  const BlockRegression regression(machine.blocks, machine.missing, MatrixXd(120, 0));
+  const Law* const laws[] = {&machine.law};
+  const BlockRegression::Score score = regression.with(laws);
+  ASSERT_TRUE(score.allowed);
+  // The convex fit to all rows: 60 that slide, and one at rest that is 2.7 − α beyond its slack.
+  EXPECT_NEAR(score.shares[0], (60.0 * 2.0 + 2.7) / 61.0, 1e-7);
+  const double alone = 0.7 * 0.7;  // of a fit without its block: 2 all over
+  EXPECT_NEAR(score.held_out.row(0).sum(), alone, 1e-6);
+}
+
 TEST(BlockRegression, ALawOfTheWrongSignIsNotAllowed) {
   const Task task = one_output(60);
   const Blocks blocks(task, 1, 5, 1000);

@@ -25,7 +25,7 @@ TEST(DriverSignals, TheSlopeOfAParabolaIsExact) {
     const double t = 0.02 * static_cast<double>(k);
     values[k] = 3.0 - 2.0 * t + 5.0 * t * t;
   }
-  const RecordSignals rates = rates_of({values}, 0.02);
+  const RecordSignals rates = rates_of({values}, 0.02).values;
   for (std::size_t k = 1; k + 1 < values.size(); ++k) {
     EXPECT_NEAR(rates[0][k], -2.0 + 10.0 * 0.02 * static_cast<double>(k), 1e-9);
   }
@@ -33,7 +33,7 @@ TEST(DriverSignals, TheSlopeOfAParabolaIsExact) {
 
 TEST(DriverSignals, TheNoiseOfASlopeIsATenthOfTheSlopeAtMost) {
   constexpr double sample_time = 0.001;
-  const RecordSignals rates = rates_of(sine(4000, sample_time, 1e-3), sample_time);
+  const RecordSignals rates = rates_of(sine(4000, sample_time, 1e-3), sample_time).values;
   double error = 0.0;
   for (std::size_t k = 300; k < 3700; ++k) {
     const double truth = test::two_pi * std::cos(test::two_pi * static_cast<double>(k) * sample_time);

@@ -39,6 +39,8 @@ END_FUNCTION_BLOCK
 struct Measured {
   std::vector<double> input{};
   std::vector<double> output{};
+  std::string name = "v";
+  double resolution = 1e-4;
 };
 
 /// The same machine with dry friction, with a bend and a wandering gain that no effect of the library is, and a sensor
@@ -82,10 +84,10 @@ Asked asked(const Measured& measured, std::string text, double to_unit = 1.0) {
   for (double& value : output) {
     value *= to_unit;
   }
-  record.add({.name = "v", .values = std::move(output)});
+  record.add({.name = measured.name, .values = std::move(output)});
   input.records.push_back(std::move(record));
   result.task = task_of(input);
-  result.task.scales = {1e-4 * to_unit};
+  result.task.scales = {measured.resolution * to_unit};
   result.footing = footing_of(result.task, {.text = input.text, .program = std::make_shared<Program>(input.program)});
   result.evidence = Weighing(result.task, "AXIS", result.footing.calibrated, {}).told();
   return result;
@@ -124,6 +126,76 @@ TEST(Evidence, WithoutFrictionNoneIsSure) {
       EXPECT_LT(one.probability * one.closed, 0.35);
     }
   }
+}
+
+/// The axis with a spring, and an encoder that resolves a hundredth of its stroke or less. Dry friction of a small
+/// drive holds it for most of the time; a dead zone in the drive lets it settle at zero.
+constexpr std::string_view sprung_axis = R"(FUNCTION_BLOCK AXIS  (* @ts 5ms *)
+  VAR_INPUT
+    U : LREAL;  (* @unit V *)
+  END_VAR
+  VAR_OUTPUT
+    X : LREAL;  (* @unit m *)
+  END_VAR
+  VAR
+    DRIVE  : HY_GAIN := (K := 6.0);
+    DAMP   : HY_GAIN := (K := 5.0);
+    SPRING : HY_GAIN := (K := 60.0);
+    SPEED  : HY_INTEGRAL_FORWARD;
+    PLACE  : HY_INTEGRAL_FORWARD;
+    FORCE  : LREAL;
+  END_VAR
+  DRIVE(XIN := U);
+  DAMP(XIN := SPEED.XOUT);
+  SPRING(XIN := PLACE.XOUT);
+  X := PLACE.XOUT;
+  FORCE := DRIVE.XOUT - DAMP.XOUT - SPRING.XOUT;
+  PLACE(XIN := SPEED.XOUT);
+  SPEED(XIN := FORCE);
+END_FUNCTION_BLOCK
+)";
+
+struct Sprung {
+  double friction = 0.0;
+  double dead_zone = 0.0;
+};
+Measured resting_axis(const Sprung& sprung, std::uint64_t seed) {
+  constexpr std::size_t samples = 2400;
+  constexpr int substeps = 50;
+  constexpr double step = 0.005 / substeps;
+  test::Noise noise(seed);
+  Measured result{.name = "x", .resolution = 2e-3};
+  double v = 0.0;
+  double x = 0.0;
+  double wander = 0.0;
+  for (std::size_t k = 0; k < samples; ++k) {
+    const double t = 0.005 * static_cast<double>(k);
+    const double u = 1.5 * std::sin(1.3 * t) + 1.0 * std::sin(3.7 * t + 1.0);
+    result.input.push_back(u);
+    result.output.push_back(std::round(x / result.resolution) * result.resolution);
+    wander = 0.99 * wander + 0.01 * noise();
+    for (int i = 0; i < substeps; ++i) {
+      const double command = u - std::clamp(u, -sprung.dead_zone, sprung.dead_zone);
+      const double force = 10.0 * (1.0 + wander) * command - 5.0 * v - 60.0 * x;
+      v += step * (force - sprung.friction * std::tanh(v / 2e-3));
+      x += step * v;
+    }
+  }
+  return result;
+}
+
+TEST(Evidence, AMachineThatRestsMostOfTheTimeIsHeldByDryFriction) {
+  const Asked found = asked(resting_axis({.friction = 10.0}, 1), std::string(sprung_axis));
+  ASSERT_FALSE(found.evidence.families.empty());
+  EXPECT_EQ(found.evidence.families.front().family, "dry_friction");
+  EXPECT_GT(found.evidence.families.front().probability, 0.7);
+  EXPECT_NEAR(level_of(found.evidence), 10.0, 2.0);
+}
+
+TEST(Evidence, AMachineThatRestsForAnotherReasonIsNotHeldByDryFriction) {
+  const Asked found = asked(resting_axis({.dead_zone = 1.0}, 2), std::string(sprung_axis));
+  ASSERT_FALSE(found.evidence.families.empty());
+  EXPECT_NE(found.evidence.families.front().family, "dry_friction");
 }
 
 /// Siblings change what is told by as much as they say, and what the record says by itself stays the same.

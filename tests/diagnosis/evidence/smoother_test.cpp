@@ -28,7 +28,12 @@ LinearSystem first_order(Index steps) {
 }
 
 /// Second implementation: all unknowns at once, x(0), w(0) and the changes of w, by least squares with their priors.
-VectorXd missing_at_once(const LinearSystem& system, double step) {
+struct AtOnce {
+  MatrixXd of_w{};    ///< w by the unknowns
+  MatrixXd normal{};  ///< the normal matrix
+  VectorXd w{};
+};
+AtOnce at_once(const LinearSystem& system, double step) {
   const Index steps = system.steps();
   const Index unknowns = steps + 1;  // x(0), w(0), w(k) − w(k−1)
   MatrixXd rows(steps, unknowns);
@@ -52,15 +57,29 @@ VectorXd missing_at_once(const LinearSystem& system, double step) {
   prior[1] = 1.0 / (system.spread[1] * system.spread[1]);
   MatrixXd normal = rows.transpose() * rows / system.noise[0];
   normal.diagonal() += prior;
-  return of_w * normal.lu().solve(rows.transpose() * right / system.noise[0]);
+  VectorXd w = of_w * normal.lu().solve(rows.transpose() * right / system.noise[0]);
+  return {.of_w = std::move(of_w), .normal = std::move(normal), .w = std::move(w)};
 }
 
 TEST(Smoother, GivesWhatLeastSquaresOverAllStepsAtOnceGives) {
   const LinearSystem system = first_order(30);
   for (const double step : {0.01, 0.3, 5.0}) {
-    const VectorXd expected = missing_at_once(system, step);
+    const VectorXd expected = at_once(system, step).w;
     const MatrixXd smoothed = Smoother(system, step).smoothed();
     EXPECT_LT((smoothed.row(1).transpose() - expected).norm(), 1e-9 * expected.norm()) << step;
+  }
+}
+
+TEST(Smoother, DeviationsAreThoseOfLeastSquaresOverAllStepsAtOnce) {
+  const LinearSystem system = first_order(30);
+  for (const double step : {0.01, 0.3, 5.0}) {
+    const AtOnce whole = at_once(system, step);
+    const MatrixXd found = Smoother(system, step).deviations();
+    // Their ratio: both rest on one estimate of σ.
+    const MatrixXd spread = whole.of_w * whole.normal.inverse() * whole.of_w.transpose();
+    const VectorXd expected = spread.diagonal().cwiseSqrt();
+    const double sigma = found(1, 0) / expected[0];
+    EXPECT_LT((found.row(1).transpose() - sigma * expected).norm(), 1e-8 * found.row(1).norm()) << step;
   }
 }
 

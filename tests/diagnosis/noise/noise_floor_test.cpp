@@ -56,6 +56,14 @@ TEST(NoiseByDifferences, WhiteNoiseOnASlowSine) {
   }
 }
 
+TEST(NoiseFloor, AStepThatResamplingHidIsNoiseAllTheSame) {
+  auto one = experiment(over_time(4000, chirp), over_time(4000, slow_sine));
+  const double smooth = noise_floor(one, 0).value;
+  one.front().steps = {0.3};
+  EXPECT_LT(smooth, 0.01);
+  EXPECT_NEAR(noise_floor(one, 0).value, 0.3 / std::sqrt(12.0), 1e-9);
+}
+
 TEST(NoiseByDifferences, GlitchesDoNotCount) {
   auto y = sum(over_time(4000, slow_sine), test::Noise(3).white(4000, 0.05));
   for (std::size_t k = 100; k < y.size(); k += 400) {

@@ -210,6 +210,30 @@ TEST(Rollout, SideBySideChangesNoBit) {
   expect_side_by_side(problem);
 }
 
+TEST(Rollout, WhatItForeseesChangesNoBit) {
+  const OutputErrorProblem problem = problem_of_chain({{"L2", "T1"}, {"G6", "K"}, {"PLAY", "WIDTH"}});
+  Rollout rollout(problem);
+  const VectorXd base = about_start(problem, rollout.unknowns());
+  VectorXd residuals(rollout.residual_count());
+  MatrixXd jacobian(rollout.residual_count(), rollout.unknowns());
+  for (Index j = 0; j < base.size(); ++j) {
+    std::vector<VectorXd> points(11, base);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      points[k][j] *= 1.0 + 0.03 * static_cast<double>(k);
+    }
+    rollout.foresee(points);
+    std::swap(points[3], points[9]);  // they are asked for in another order, and two not at all
+    for (std::size_t k = 1; k + 1 < points.size(); ++k) {
+      ASSERT_TRUE(rollout.residuals(points[k], residuals, nullptr));
+      ASSERT_TRUE(same(residuals, fresh(problem, points[k]))) << j << " point " << k;
+      if (k == 5) {
+        ASSERT_TRUE(rollout.residuals(points[8], residuals, &jacobian));
+        ASSERT_TRUE(same(jacobian, jacobian_of(problem, points[8]))) << j;
+      }
+    }
+  }
+}
+
 TEST(Rollout, WideRegistersChangeNoDerivative) {
   if (!has_wide_registers()) {
     GTEST_SKIP() << "this processor has no registers of 512 bits";

@@ -248,8 +248,8 @@ TEST(GenerateHost, WhereTheRunFileNamesAnAddressItHasTheLivePage) {
               AllOf(HasSubstr("find_package(Boost 1.74 REQUIRED)\n"), HasSubstr(" Boost::headers)"),
                     HasSubstr("\n  hysteron/runtime/web/assets.cpp")));
   EXPECT_THAT(bench.read("host/README.md"), HasSubstr(" libboost-dev\n"));
-  EXPECT_THAT(bench.read("host/main.cpp"), AllOf(HasSubstr("page_of_run_file"), HasSubstr(".picture = \"<svg "),
-                                                 HasSubstr("\"HYST.XOUT\"")));
+  EXPECT_THAT(bench.read("host/main.cpp"),
+              AllOf(HasSubstr("page_of_run_file"), HasSubstr(".picture = \"<svg "), HasSubstr("\"HYST.XOUT\"")));
   EXPECT_THAT(bench.read("host/hysteron/runtime/web/assets.cpp"),
               AllOf(HasSubstr("<!DOCTYPE html>"), HasSubstr("Asset{\"/dygraph.js\"")));
   EXPECT_THAT(bench.read("host/hysteron-plant.service.in"),

@@ -1,9 +1,10 @@
 #include "tool/exported_axes.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <string_view>
+#include <utility>
 
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"

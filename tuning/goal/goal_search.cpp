@@ -237,8 +237,8 @@ class GoalSearch {
     return any;
   }
 
-  /// A search that met loops that are too slow ends before them. It goes on with their bound as one that it knows,
-  /// along which it can slide.
+  /// A search ends before loops that are too slow. It goes on with their bound as one that it knows, along which it can
+  /// slide.
   FitStatus descend_along_slow(const VectorXd& from) {
     FitStatus ended = descend(from);
     const bool is_done = is_feasibility_ && best_.excess <= 0.0;
@@ -356,7 +356,7 @@ class GoalSearch {
   /// The multipliers of the smallest largest excess sum to 1: each limit's share in that it is not smaller.
   void keep_shares(const VectorXd& multipliers) {
     new_shares_.assign(problem_.limits.size() * problem_.plants.size(), 0.0);
-    const double sum = multipliers.cwiseMax(0.0).sum();
+    const double sum = multipliers.head(std::ssize(places_)).cwiseMax(0.0).sum();
     for (std::size_t i = 0; i < places_.size() && sum > 0.0; ++i) {
       new_shares_[places_[i].limit * problem_.plants.size() + places_[i].plant] +=
           std::max(multipliers[static_cast<Index>(i)], 0.0) / sum;

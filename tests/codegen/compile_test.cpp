@@ -49,6 +49,22 @@ TEST(Compile, FindsSeveralFaultsAtOnceInTheOrderOfTheText) {
   EXPECT_EQ(found[3].number, error::unknown_name);
 }
 
+TEST(Compile, APinWhoseValueIsRefusedIsNotToldAsUnconnected) {
+  const auto numbers = [](const std::string& call) {
+    std::vector<int> list;
+    for (const Diagnostic& one :
+         diagnose("FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT X : BOOL; END_VAR VAR_OUTPUT Q : BOOL; END_VAR\n"
+                  "VAR T : HY_TON; END_VAR\n" +
+                  call + " Q := T.Q; END_FUNCTION_BLOCK")) {
+      list.push_back(one.number);
+    }
+    return list;
+  };
+  EXPECT_EQ(numbers("T(IN := X, PT := 2);"), std::vector<int>{error::type_mismatch});
+  EXPECT_EQ(numbers("T(IN := X, PT := NOWHERE);"), std::vector<int>{error::unknown_name});
+  EXPECT_EQ(numbers("T(IN := X);"), std::vector<int>{error::unconnected_input});
+}
+
 TEST(Compile, AnAlgebraicLoopIsAPathWithTheWiresWhereADelayWouldCutIt) {
   const auto found = diagnose(block(io + "VAR A : HY_GAIN; B : HY_LAG; S : HY_SUM; END_VAR",
                                     "S(IN1 := U, IN2 := B.XOUT);\nA(XIN := S.XOUT);\nB(XIN := A.XOUT);\nY := B.XOUT;"));

@@ -41,7 +41,8 @@ TEST(WideCode, SharesNoInlineFunctionWithOtherCode) {
   std::set<std::string> others;
   std::size_t wide_files = 0;
   for (std::string object; std::getline(listed, object);) {
-    const bool is_wide = object.find("lanes_code") != std::string::npos || object.find("wide_code") != std::string::npos;
+    const bool is_wide =
+        object.find("lanes_code") != std::string::npos || object.find("wide_code") != std::string::npos;
     wide_files += is_wide ? 1 : 0;
     (is_wide ? wide : others).merge(inline_functions(object, folder));
   }

@@ -170,8 +170,14 @@ class Enumeration {
       insert(kind, edge, {});
       return;
     }
+    if (!options_.loads.empty() && !edge.prefix.empty()) {
+      return;
+    }
     for (const std::string& driver : drivers(kind, edge)) {
-      const std::vector<std::pair<std::string, std::string>> wires{{kind.auxiliaries.front(), driver}};
+      std::vector<std::pair<std::string, std::string>> wires{{kind.auxiliaries.front(), driver}};
+      for (std::size_t i = 1; i < kind.auxiliaries.size() && i <= options_.loads.size(); ++i) {
+        wires.emplace_back(kind.auxiliaries[i], options_.loads[i - 1]);
+      }
       if (!insert(kind, edge, wires) && kind.fed_back) {
         insert(kind, edge, wires, true);
       }
@@ -215,8 +221,11 @@ class Enumeration {
       insertion.delayed = std::exchange(insertion.wires.front().second, insertion.delay + ".XOUT");
       applied.delay = edge.prefix + insertion.delay;
     }
-    if (!wires.empty() && std::ranges::find(options_.columns, wires.front().second) != options_.columns.end()) {
-      insertion.new_input = wires.front().second;
+    const auto is_column = [&](const auto& wire) {
+      return std::ranges::find(options_.columns, wire.second) != options_.columns.end();
+    };
+    if (const auto column = std::ranges::find_if(wires, is_column); column != wires.end()) {
+      insertion.new_input = column->second;
     }
     candidate.variant.text = with_effect(*source_, edge, insertion);
     candidate.family = edge.name;
@@ -300,7 +309,7 @@ class Enumeration {
   }
 
   /// What is fed back comes from what the effect changes; a coupling is of another signal than the one that is there
-  /// already; what is periodic in the signal itself has a position there.
+  /// already; what is periodic in the signal itself has a position there. A load may come from anywhere.
   [[nodiscard]] static bool makes_sense(const Candidate& candidate, const Wire& changed) {
     const Program& program = *candidate.variant.program;
     const Graph& graph = program.graph;
@@ -308,14 +317,16 @@ class Enumeration {
         is_no_position(units::Solution(graph, program.schedule).outputs()[changed.index].front())) {
       return false;
     }
-    return std::ranges::all_of(candidate.auxiliary, [&](const Wire& driver) {
-      if (candidate.kind.by_velocity && !is_velocity(graph, driver, changed, candidate.input)) {
-        return false;
-      }
-      return candidate.kind.fed_back
-                 ? depends_on(graph, driver, changed, changed)
-                 : driver.from != Wire::From::Input || !depends_on(graph, candidate.input, driver, changed);
-    });
+    if (candidate.auxiliary.empty()) {
+      return true;
+    }
+    const Wire& driver = candidate.auxiliary.front();
+    if (candidate.kind.by_velocity && !is_velocity(graph, driver, changed, candidate.input)) {
+      return false;
+    }
+    return candidate.kind.fed_back
+               ? depends_on(graph, driver, changed, changed)
+               : driver.from != Wire::From::Input || !depends_on(graph, candidate.input, driver, changed);
   }
 
   const Variant& base_;

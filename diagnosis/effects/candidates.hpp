@@ -75,6 +75,9 @@ struct CandidateOptions {
   std::vector<std::string> effects{};  ///< identifiers; empty: all
   std::vector<std::string> columns{};  ///< of the records that the diagram does not use, for cross-coupling
   bool again = false;                  ///< effects that the variant has are tried beside themselves, too
+  /// What drives the further inputs of an effect but the first, in their order; none: they stay at their defaults. It
+  /// is there in the top block alone.
+  std::vector<std::string> loads{};
 };
 
 /// Every effect on every edge, every richer block, every parameter that switches an effect on.

@@ -74,8 +74,11 @@ Explained explained(const Task& task, const std::string& top, const SetFinding& 
     if (law.closed < rules[policy::relevant] && set.laws.size() > 1) {
       continue;
     }
-    const std::vector<Candidate> list =
-        candidates_of(result.variant, top, {.effects = {law.effect}, .columns = columns, .again = true});
+    CandidateOptions options{.effects = {law.effect}, .columns = columns, .again = true};
+    for (std::size_t i = 1; i < law.drivers.size(); ++i) {
+      options.loads.push_back(wire_name(calibrated.variant.program->graph, law.drivers[i]));
+    }
+    const std::vector<Candidate> list = candidates_of(result.variant, top, options);
     const Candidate* const found = fitting(list, calibrated.variant.program->graph, law);
     if (found == nullptr) {
       is_whole = false;

@@ -145,6 +145,23 @@ TEST(Candidates, FrictionTakesAVelocityFromABlockWithMemory) {
   EXPECT_THAT(edges_in(list), testing::Contains("FORCE"));
 }
 
+/// A load is no motion: any signal of the top block may be one, and a column becomes an input.
+TEST(Candidates, AFrictionThatGrowsWithALoadIsWiredToIt) {
+  for (const char* load : {"U", "PRESSURE"}) {
+    const auto list =
+        candidates(test::axis(), "AXIS", {.effects = {"load_friction"}, .columns = {"PRESSURE"}, .loads = {load}});
+    ASSERT_FALSE(list.empty());
+    for (const Candidate& one : list) {
+      EXPECT_THAT(one.own().wires, testing::ElementsAre(std::pair(std::string("V"), std::string("SPEED.XOUT")),
+                                                        std::pair(std::string("W"), std::string(load))));
+      EXPECT_EQ(one.auxiliary.size(), 2U);
+      EXPECT_NE(find_port(one.variant.program->graph.inputs, load), nullptr);
+    }
+    EXPECT_THAT(edges_in(list), testing::Contains("FORCE"));
+  }
+  EXPECT_EQ(candidates(test::axis(), "AXIS", {.effects = {"load_friction"}}).front().auxiliary.size(), 1U);
+}
+
 /// A mass in a loop of position and speed.
 const std::string servo = R"(FUNCTION_BLOCK SERVO  (* @ts 1ms *)
   VAR_INPUT

@@ -64,7 +64,8 @@ std::string unit_in(std::string text, const MissingPicture& picture) {
 std::string sizes_of(const EffectFinding& effect, const MissingPicture& picture) {
   std::vector<std::string> sizes;
   for (const ParameterFinding& parameter : effect.parameters) {
-    if (!picture.unit.empty() && effect.edge == picture.edge && parameter.unit == picture.unit) {
+    const bool determined = std::isfinite(parameter.low) && std::isfinite(parameter.high);
+    if (determined && !picture.unit.empty() && effect.edge == picture.edge && parameter.unit == picture.unit) {
       sizes.push_back(fmt::format("{} {:.3g}", parameter.name, parameter.value));
     }
   }

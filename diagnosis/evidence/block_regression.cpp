@@ -108,7 +108,7 @@ VectorXd ridge_of(const MatrixXd& gram) {
 
 /// What is left beyond a slack.
 double beyond(double left, double slack) {
-  return std::max(0.0, std::abs(left) - slack);
+  return std::max(0.0, std::abs(left) - std::abs(slack));
 }
 
 }  // namespace
@@ -127,12 +127,14 @@ BlockRegression::Products BlockRegression::settled(const Terms& terms) const {
     }
     bool moved = false;
     const VectorXd left = residuals_ + known_ * all.head(fixed) + terms.columns * all.tail(terms.columns.cols());
-    const VectorXd slack = terms.slacks * all.tail(terms.columns.cols()).cwiseAbs();
+    const VectorXd slack = terms.slacks * all.tail(terms.columns.cols());
     for (Index row = 0; row < residuals_.size(); ++row) {
       if ((terms.slacks.row(row).array() == 0.0).all()) {
         continue;
       }
-      const int side = std::abs(left[row]) <= slack[row] ? 0 : left[row] > 0.0 ? 1 : -1;
+      // Of the two ends of what the laws give the nearer one counts: at v + 2s where that is 1, at v - 2s where -1.
+      const int nearer = (left[row] > 0.0) == (slack[row] > 0.0) ? -1 : 1;
+      const int side = std::abs(left[row]) <= std::abs(slack[row]) ? 0 : nearer;
       int& before = sides[static_cast<std::size_t>(row)];
       if (side == before) {
         continue;
@@ -145,10 +147,7 @@ BlockRegression::Products BlockRegression::settled(const Terms& terms) const {
         residuals[row] = 0.0;
       } else {
         known.row(row) = known_.row(row);
-        for (Index j = 0; j < columns.cols(); ++j) {
-          const double sign = all[fixed + j] < 0.0 ? -1.0 : 1.0;
-          columns(row, j) = terms.columns(row, j) - side * sign * terms.slacks(row, j);
-        }
+        columns.row(row) = terms.columns.row(row) + side * terms.slacks.row(row);
         residuals[row] = residuals_[row];
       }
     }
@@ -208,7 +207,7 @@ BlockRegression::Score BlockRegression::with(std::span<const Law* const> laws, b
       const VectorXd left = residuals_.segment(run.first, run.size) +
                             known_.middleRows(run.first, run.size) * c.head(fixed) +
                             terms.columns.middleRows(run.first, run.size) * c.tail(own);
-      const VectorXd free = terms.slacks.middleRows(run.first, run.size) * c.tail(own).cwiseAbs();
+      const VectorXd free = terms.slacks.middleRows(run.first, run.size) * c.tail(own);
       for (Index row = 0; row < run.size; ++row) {
         energy += beyond(left[row], free[row]) * beyond(left[row], free[row]);
       }

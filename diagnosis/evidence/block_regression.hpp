@@ -68,7 +68,7 @@ class BlockRegression {
   /// `is_own`: the known columns are those of the task.
   [[nodiscard]] Products products_of(const MatrixXd& known, const MatrixXd& columns, const VectorXd& residuals,
                                      bool is_own) const;
-  /// Of the rows that lie out of their slack, from its edge: a convex fit by an active set.
+  /// Of the rows that lie out of their slack, from its nearer end: a fit by an active set.
   [[nodiscard]] Products settled(const Terms& terms) const;
 
   const Blocks& blocks_;

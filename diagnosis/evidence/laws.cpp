@@ -364,7 +364,7 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
         draft.law.family = family_at(*job.kind, draft.law, hints.duration / static_cast<double>(blocks.count()));
         draft.law.responses = thin.middleCols(column, std::ssize(draft.law.terms));
         column += std::ssize(draft.law.terms);
-        draft.law.slacks = thin.middleCols(column, std::ssize(draft.slacks)).cwiseAbs();
+        draft.law.slacks = thin.middleCols(column, std::ssize(draft.slacks));
         column += std::ssize(draft.slacks);
         if (draft.law.responses.squaredNorm() > 0.0) {
           found[i].push_back(std::move(draft.law));

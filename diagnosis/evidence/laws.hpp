@@ -6,9 +6,9 @@
 // else. In a strength that a law is linear in, φ is a unit of it, and how much there is of it is found by regression; a
 // strength that it is not linear in, the width of a backlash, is tried on a grid as a shape is.
 //
-// A speed v is found from positions, with a deviation s. A dry friction jumps with its sign. Where the machine rests, the
-// friction is whatever holds it, up to its level (Filippov's set-valued law): it lies between what the block gives at
-// v − 2s and at v + 2s.
+// A speed v is found from positions, with a deviation s. A dry friction jumps with its sign. Where the machine rests,
+// the friction is whatever holds it, up to its level (Filippov's set-valued law): it lies between what the block gives
+// at v − 2s and at v + 2s.
 #pragma once
 
 #include <string>
@@ -39,7 +39,7 @@ struct Law {
   std::vector<std::pair<std::string, double>> shape{};  ///< what is no term: shapes, strengths that are not linear
   std::vector<Term> terms{};
   MatrixXd responses{};  ///< of the outputs, thinned; a column for each term
-  MatrixXd slacks{};     ///< to either side of these, where a speed is not known so well as a friction jumps; or empty
+  MatrixXd slacks{};     ///< half of what they change by with a speed as far as it is not known; or empty
   std::size_t place = 0;
 
   /// The same but for its numbers.

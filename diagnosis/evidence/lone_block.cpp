@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -53,11 +52,7 @@ LoneBlock::Added LoneBlock::added() {
   if (low.empty() || high.empty()) {
     return {};
   }
-  Added result{.middle = combined(low, 0.5, high, 0.5), .slack = combined(high, 0.5, low, -0.5)};
-  for (Signal& one : result.slack) {
-    std::ranges::transform(one, one.begin(), [](double value) { return std::abs(value); });
-  }
-  return result;
+  return {.middle = combined(low, 0.5, high, 0.5), .slack = combined(high, 0.5, low, -0.5)};
 }
 
 RecordSignals LoneBlock::added_at(double deviations) {

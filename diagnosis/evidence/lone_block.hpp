@@ -22,8 +22,8 @@ class LoneBlock {
 
   void set(std::string_view parameter, double value);
 
-  /// What it adds to its input, between the least and the most that the first driver allows, and half of what these
-  /// differ by.
+  /// What it adds to its input, between what it adds where the first driver is lower and where it is higher, and half
+  /// of what these differ by, with its sign.
   struct Added {
     RecordSignals middle{};  ///< empty where it is not finite
     RecordSignals slack{};   ///< empty where the driver is sure

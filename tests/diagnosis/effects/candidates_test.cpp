@@ -147,7 +147,7 @@ TEST(Candidates, FrictionTakesAVelocityFromABlockWithMemory) {
 
 /// A load is no motion: any signal of the top block may be one, and a column becomes an input.
 TEST(Candidates, AFrictionThatGrowsWithALoadIsWiredToIt) {
-  for (const char* load : {"U", "PRESSURE"}) {
+  for (const char* load : {"FORCE", "PRESSURE"}) {
     const auto list =
         candidates(test::axis(), "AXIS", {.effects = {"load_friction"}, .columns = {"PRESSURE"}, .loads = {load}});
     ASSERT_FALSE(list.empty());

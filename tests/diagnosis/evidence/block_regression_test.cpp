@@ -109,6 +109,23 @@ TEST(BlockRegression, WhatIsBeyondTheSlackCountsFromItsEdge) {
   EXPECT_NEAR(score.held_out.row(0).sum(), alone, 1e-6);
 }
 
+TEST(BlockRegression, LawsThatTakeEachOtherBackHaveNoSlackTogether) {
+  SlidesAndRests machine(120);
+  machine.law.terms.front().lowest = -std::numeric_limits<double>::infinity();
+  Law other = machine.law;
+  other.responses = -machine.law.responses;
+  other.slacks = -machine.law.slacks;
+  for (Index k = 0; k < machine.missing.size(); ++k) {
+    machine.missing[k] *= k % 10 < 5 ? 10.0 : 1.0;  // far more at rest than what slides can hold
+  }
+  const BlockRegression regression(machine.blocks, machine.missing, MatrixXd(120, 0));
+  const Law* const one[] = {&machine.law};
+  const Law* const both[] = {&machine.law, &other};
+  const double alone = regression.with(one).held_out.sum();
+  EXPECT_GT(alone, 1.0);
+  EXPECT_GT(regression.with(both, false).held_out.sum(), 0.9 * alone);
+}
+
 TEST(BlockRegression, ALawOfTheWrongSignIsNotAllowed) {
   const Task task = one_output(60);
   const Blocks blocks(task, 1, 5, 1000);

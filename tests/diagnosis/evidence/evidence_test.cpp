@@ -189,7 +189,14 @@ TEST(Evidence, AMachineThatRestsMostOfTheTimeIsHeldByDryFriction) {
   ASSERT_FALSE(found.evidence.families.empty());
   EXPECT_EQ(found.evidence.families.front().family, "dry_friction");
   EXPECT_GT(found.evidence.families.front().probability, 0.7);
-  EXPECT_NEAR(level_of(found.evidence), 10.0, 2.0);
+  // Of two frictions on two edges the slack is that of their sum: none hides behind another that takes it back.
+  for (const LawFinding& law : found.evidence.sets.front().laws) {
+    for (const LawValue& value : law.values) {
+      if (value.name == "LEVEL" || value.name == "UP" || value.name == "DOWN") {
+        EXPECT_LT(std::abs(value.value), 20.0) << law.effect << " at " << law.edge;
+      }
+    }
+  }
 }
 
 TEST(Evidence, AMachineThatRestsForAnotherReasonIsNotHeldByDryFriction) {

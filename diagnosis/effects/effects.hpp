@@ -5,6 +5,7 @@
 // role, and its unit relative to the signal ('x), which says what a sensible size is.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ struct EffectParameter {
   std::string unit{};  ///< as declared
   Role role = Role::Other;
   bool strength = false;  ///< neutral at field.neutral; else a shape, without meaning while all strengths are neutral
+
+  /// Of a friction: how far it gives before it slides, a length where its velocity has that of a length.
+  [[nodiscard]] bool is_travel() const { return unit == "'v*s"; }
 };
 
 /// How the diagram is changed.
@@ -68,6 +72,9 @@ struct EffectKind {
   bool by_velocity = false;                   ///< and it is a velocity
   bool of_record = false;                     ///< it acts at the ports of the whole diagram
   bool by_position = false;                   ///< periodic in a position: the auxiliary, or the signal itself
+
+  /// Whether it is a dry friction, which holds at rest: it has a travel from there to sliding.
+  [[nodiscard]] bool slides() const { return std::ranges::any_of(parameters, &EffectParameter::is_travel); }
 };
 
 /// Those of the catalogue and of the definitions of a file, each with at least one strength, sorted by identifier.

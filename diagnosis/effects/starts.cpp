@@ -151,7 +151,7 @@ std::vector<double> shape_grid(const EffectParameter& parameter, bool ends, cons
   if (parameter.unit == "'v") {
     return scaled(across, {0.01, 0.05, 0.2});
   }
-  if (parameter.unit == "'v*s") {  // a travel: what the fastest motion covers in so many samples
+  if (parameter.is_travel()) {  // what the fastest motion covers in so many samples
     return scaled(across * hints.sample_time, {0.005, 0.05, 0.5, 5.0});
   }
   return {parameter.field.preset};

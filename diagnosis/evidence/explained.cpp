@@ -98,7 +98,7 @@ Explained explained(const Task& task, const std::string& top, const SetFinding& 
       variant.further.push_back(unknown_of(parameter, own.paths[j], {.values = {value}}));
       start.conservativeResize(start.size() + 1);
       start[start.size() - 1] = value;
-      if (parameter.unit == "'v*s") {
+      if (parameter.is_travel()) {
         travels.push_back(start.size() - 1);
       }
     }

@@ -239,11 +239,6 @@ Grids with_finer_durations(const Applied& effect, Grids grids) {
   return grids;
 }
 
-/// Whether it holds at rest: it has a travel from rest to sliding.
-bool slides(const EffectKind& kind) {
-  return kind.by_velocity && std::ranges::count(kind.parameters, "'v*s", &EffectParameter::unit) > 0;
-}
-
 struct Job {
   const EffectKind* kind = nullptr;
   std::size_t place = 0;
@@ -330,7 +325,7 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
       names.push_back(one->name);
     }
     const RecordSignals* const unsure =
-        slides(*job.kind) && space.is_at_once() && !job.drivers.front()->deviations.empty()
+        job.kind->by_velocity && job.kind->slides() && space.is_at_once() && !job.drivers.front()->deviations.empty()
             ? &job.drivers.front()->deviations
             : nullptr;
     const bool imposed = job.kind->by_velocity && !job.drivers.empty() && job.drivers.front()->is_imposed();

@@ -105,9 +105,7 @@ bool may_drive(const EffectKind& kind, const DriverSignal& signal, const Space::
   const bool moves = signal.source == DriverSignal::Source::Output || signal.source == DriverSignal::Source::Wire;
   if (kind.by_velocity) {
     // In proportion to a slope that looks ahead, any linear dynamics is a friction.
-    const bool linear =
-        std::ranges::none_of(kind.parameters, [](const EffectParameter& one) { return one.unit == "'v*s"; });
-    if (linear && signal.is_rate) {
+    if (!kind.slides() && signal.is_rate) {
       return false;
     }
     return quantity.velocity || (!quantity.known && moves && !quantity_of(signal.of_unit).known);

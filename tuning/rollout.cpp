@@ -110,7 +110,7 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
       machine.step();
       if (replay.kept != nullptr) {
         for (const Wire& wire : replay.kept->rest.given) {
-          values.push_back(plain_value(machine.value(wire)));
+          values.push_back(value_of(machine.value(wire)));
         }
       }
       if (step < range.first) {
@@ -118,7 +118,7 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
       }
       for (std::size_t output = 0; output < problem_.outputs.size(); ++output) {
         const S y = machine.output(problem_.outputs[output]);
-        const double value = plain_value(y);
+        const double value = value_of(y);
         if (!std::isfinite(value)) {
           return false;
         }

@@ -54,7 +54,7 @@ bool LoopRun::take_test(Machine<S>& machine, const VectorXd& x, std::span<const 
   }
   machine.reset();
   if (plant_.cut) {
-    machine.set_input(plant_.cut->input, S(0.0));
+    machine.set_input(plant_.cut->input, 0.0);
   }
   largest_ = 0.0;
   for (std::size_t step = 0; step < drive_.steps; ++step) {
@@ -96,7 +96,7 @@ LoopState LoopRun::take_impulse(Machine<S>& machine, std::span<const Index> colu
     for (std::size_t run = 0; run < 2; ++run) {
       machine.restore(states[run]);
       for (std::size_t step = first; step < last; ++step) {
-        machine.set_input(plant_.cut->input, S(step > 0 ? 0.0 : run == 0 ? put_in : -put_in));
+        machine.set_input(plant_.cut->input, step > 0 ? 0.0 : run == 0 ? put_in : -put_in);
         machine.step();
         const S v = machine.value(plant_.cut->behind);
         if (run == 0) {

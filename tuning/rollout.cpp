@@ -213,6 +213,14 @@ bool Rollout::holds(const Kept& kept, const VectorXd& x, std::size_t experiment)
          });
 }
 
+void Rollout::make_ready(std::unique_ptr<Kept>& kept, std::vector<bool> still, std::size_t experiment) const {
+  if (kept == nullptr || kept->still != still) {
+    kept = std::make_unique<Kept>(problem_.program, sample_time_of(problem_), std::move(still),
+                                  problem_.experiments.size());
+  }
+  kept->records[experiment].filled = false;
+}
+
 Rollout::Replay Rollout::of_grid(const VectorXd& x, std::size_t experiment) {
   const Replay before = of_unreached(experiment);
   const VectorXd last = std::exchange(last_x_[experiment], x);
@@ -228,11 +236,7 @@ Rollout::Replay Rollout::of_grid(const VectorXd& x, std::size_t experiment) {
   if (changed.empty() || count(still) <= played) {
     return held ? Replay{.played = of_grid_.get()} : before;
   }
-  if (of_grid_ == nullptr || of_grid_->still != still) {
-    of_grid_ = std::make_unique<Kept>(problem_.program, sample_time_of(problem_), std::move(still),
-                                      problem_.experiments.size());
-  }
-  of_grid_->records[experiment].filled = false;
+  make_ready(of_grid_, std::move(still), experiment);
   return {.kept = of_grid_.get()};
 }
 

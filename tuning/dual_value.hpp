@@ -39,12 +39,4 @@ void set_inputs(Machine<S>& machine, const Drive& drive, std::size_t step) {
   }
 }
 
-inline double plain_value(double value) {
-  return value;
-}
-template <int N, int W>
-double plain_value(const Dual<N, W>& value) {
-  return value.value();
-}
-
 }  // namespace hysteron

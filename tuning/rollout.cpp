@@ -110,7 +110,7 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
       machine.step();
       if (replay.kept != nullptr) {
         for (const Wire& wire : replay.kept->rest.given) {
-          values.push_back(plain_value(machine.value(wire)));
+          values.push_back(value_of(machine.value(wire)));
         }
       }
       if (step < range.first) {
@@ -118,7 +118,7 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
       }
       for (std::size_t output = 0; output < problem_.outputs.size(); ++output) {
         const S y = machine.output(problem_.outputs[output]);
-        const double value = plain_value(y);
+        const double value = value_of(y);
         if (!std::isfinite(value)) {
           return false;
         }
@@ -213,6 +213,14 @@ bool Rollout::holds(const Kept& kept, const VectorXd& x, std::size_t experiment)
          });
 }
 
+void Rollout::make_ready(std::unique_ptr<Kept>& kept, std::vector<bool> still, std::size_t experiment) const {
+  if (kept == nullptr || kept->still != still) {
+    kept = std::make_unique<Kept>(problem_.program, sample_time_of(problem_), std::move(still),
+                                  problem_.experiments.size());
+  }
+  kept->records[experiment].filled = false;
+}
+
 Rollout::Replay Rollout::of_grid(const VectorXd& x, std::size_t experiment) {
   const Replay before = of_unreached(experiment);
   const VectorXd last = std::exchange(last_x_[experiment], x);
@@ -228,11 +236,7 @@ Rollout::Replay Rollout::of_grid(const VectorXd& x, std::size_t experiment) {
   if (changed.empty() || count(still) <= played) {
     return held ? Replay{.played = of_grid_.get()} : before;
   }
-  if (of_grid_ == nullptr || of_grid_->still != still) {
-    of_grid_ = std::make_unique<Kept>(problem_.program, sample_time_of(problem_), std::move(still),
-                                      problem_.experiments.size());
-  }
-  of_grid_->records[experiment].filled = false;
+  make_ready(of_grid_, std::move(still), experiment);
   return {.kept = of_grid_.get()};
 }
 

@@ -106,6 +106,9 @@ class Rollout {
   Replay of_unreached(std::size_t experiment);
   /// The same for a point of a grid: what its own changes do not reach is kept as well.
   Replay of_grid(const Eigen::VectorXd& x, std::size_t experiment);
+  /// Makes ready to keep a record without the nodes that are `still`; what is kept of other records stays where these
+  /// are the same nodes.
+  void make_ready(std::unique_ptr<Kept>& kept, std::vector<bool> still, std::size_t experiment) const;
   /// Whether what is kept of a record is what a rollout at x would give.
   [[nodiscard]] bool holds(const Kept& kept, const Eigen::VectorXd& x, std::size_t experiment) const;
   /// What is played into points that are run side by side: what none of the columns reaches in which they differ. It is

@@ -97,11 +97,7 @@ Kept* Rollout::played_side_by_side(std::span<const VectorXd> points, std::size_t
       return kept;
     }
   }
-  if (beside_ == nullptr || beside_->still != still) {
-    beside_ = std::make_unique<Kept>(problem_.program, problem_.experiments.front().drive.sample_time, std::move(still),
-                                     problem_.experiments.size());
-  }
-  beside_->records[experiment].filled = false;
+  make_ready(beside_, std::move(still), experiment);
   if (!keeping_pass(points.front(), experiment, *beside_, *residuals.front())) {
     residuals.front().reset();
     return nullptr;

@@ -16,49 +16,28 @@ bool has_wide_registers() {
 }
 
 namespace detail {
-namespace {
 
-template <class Function>
-void each_in_place(double* x, const Function& function) {
+template <Op op>
+void each_function(double* x) {
   for (std::size_t k = 0; k < lane_count; ++k) {
-    x[k] = function(x[k]);
+    x[k] = real_operation(op, x[k], x[k]);
   }
 }
+template void each_function<Op::Sqrt>(double* x);
+template void each_function<Op::Exp>(double* x);
+template void each_function<Op::Log>(double* x);
+template void each_function<Op::Sin>(double* x);
+template void each_function<Op::Cos>(double* x);
+template void each_function<Op::Tan>(double* x);
+template void each_function<Op::Asin>(double* x);
+template void each_function<Op::Acos>(double* x);
+template void each_function<Op::Atan>(double* x);
+template void each_function<Op::ToSingle>(double* x);
 
-}  // namespace
-
-void each_sqrt(double* x) {
-  each_in_place(x, [](double one) { return hysteron::sqrt(one); });
-}
-void each_exp(double* x) {
-  each_in_place(x, [](double one) { return hysteron::exp(one); });
-}
-void each_log(double* x) {
-  each_in_place(x, [](double one) { return hysteron::log(one); });
-}
-void each_sin(double* x) {
-  each_in_place(x, [](double one) { return hysteron::sin(one); });
-}
-void each_cos(double* x) {
-  each_in_place(x, [](double one) { return hysteron::cos(one); });
-}
-void each_tan(double* x) {
-  each_in_place(x, [](double one) { return hysteron::tan(one); });
-}
-void each_asin(double* x) {
-  each_in_place(x, [](double one) { return hysteron::asin(one); });
-}
-void each_acos(double* x) {
-  each_in_place(x, [](double one) { return hysteron::acos(one); });
-}
-void each_atan(double* x) {
-  each_in_place(x, [](double one) { return hysteron::atan(one); });
-}
-void each_single(double* x) {
-  each_in_place(x, [](double one) { return hysteron::single(one); });
-}
 void each_decayed_part(double* u) {
-  each_in_place(u, [](double one) { return hysteron::decayed_part(one); });
+  for (std::size_t k = 0; k < lane_count; ++k) {
+    u[k] = hysteron::decayed_part(u[k]);
+  }
 }
 void each_power(double* base, const double* exponent) {
   for (std::size_t k = 0; k < lane_count; ++k) {

@@ -35,17 +35,9 @@ using LaneIntegers [[gnu::vector_size(32)]] = std::int32_t;
 using LaneBytes [[gnu::vector_size(8)]] = std::int8_t;
 using LaneUnsigned [[gnu::vector_size(32)]] = std::uint32_t;
 
-// Of the C library, and of blocks/scalar.hpp, lane by lane; compiled for every processor (lane_functions.cpp).
-void each_sqrt(double* x);
-void each_exp(double* x);
-void each_log(double* x);
-void each_sin(double* x);
-void each_cos(double* x);
-void each_tan(double* x);
-void each_asin(double* x);
-void each_acos(double* x);
-void each_atan(double* x);
-void each_single(double* x);
+// Lane by lane, with the words of evaluate.hpp and of the blocks; compiled for every processor (lane_functions.cpp).
+template <Op op>
+void each_function(double* x);  ///< an operation with one real operand
 void each_power(double* base, const double* exponent);
 void each_decayed_part(double* u);
 void each_to_int(const double* x, std::int32_t* result);
@@ -189,34 +181,34 @@ HY_INLINE Lanes each(Function* function, const Lanes& x) {
 }  // namespace detail
 
 HY_INLINE Lanes sqrt(const Lanes& x) {
-  return detail::each(&detail::each_sqrt, x);
+  return detail::each(&detail::each_function<Op::Sqrt>, x);
 }
 HY_INLINE Lanes exp(const Lanes& x) {
-  return detail::each(&detail::each_exp, x);
+  return detail::each(&detail::each_function<Op::Exp>, x);
 }
 HY_INLINE Lanes log(const Lanes& x) {
-  return detail::each(&detail::each_log, x);
+  return detail::each(&detail::each_function<Op::Log>, x);
 }
 HY_INLINE Lanes sin(const Lanes& x) {
-  return detail::each(&detail::each_sin, x);
+  return detail::each(&detail::each_function<Op::Sin>, x);
 }
 HY_INLINE Lanes cos(const Lanes& x) {
-  return detail::each(&detail::each_cos, x);
+  return detail::each(&detail::each_function<Op::Cos>, x);
 }
 HY_INLINE Lanes tan(const Lanes& x) {
-  return detail::each(&detail::each_tan, x);
+  return detail::each(&detail::each_function<Op::Tan>, x);
 }
 HY_INLINE Lanes asin(const Lanes& x) {
-  return detail::each(&detail::each_asin, x);
+  return detail::each(&detail::each_function<Op::Asin>, x);
 }
 HY_INLINE Lanes acos(const Lanes& x) {
-  return detail::each(&detail::each_acos, x);
+  return detail::each(&detail::each_function<Op::Acos>, x);
 }
 HY_INLINE Lanes atan(const Lanes& x) {
-  return detail::each(&detail::each_atan, x);
+  return detail::each(&detail::each_function<Op::Atan>, x);
 }
 HY_INLINE Lanes single(const Lanes& x) {
-  return detail::each(&detail::each_single, x);
+  return detail::each(&detail::each_function<Op::ToSingle>, x);
 }
 HY_INLINE Lanes decayed_part(const Lanes& u) {
   return detail::each(&detail::each_decayed_part, u);

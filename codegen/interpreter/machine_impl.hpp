@@ -17,55 +17,37 @@ namespace detail {
 
 template <class S>
 void write_as(void* target, Type type, const NumberOf<S>& number) {
-  if constexpr (SideBySide<S>) {
-    switch (type) {
-      case Type::Real:
-        new (target) S(number);
-        break;
-      case Type::Bool:
-        new (target) Bool<S>(number != S(0.0));
-        break;
-      case Type::Int:
-        new (target) Int<S>(to_int(number));
-        break;
-      case Type::Word:
-        new (target) Word<S>(int_to_word(to_int(number)));
-        break;
+  const auto plain = [&] {
+    if constexpr (SideBySide<S>) {
+      return number;
+    } else {
+      return value_of(number);
     }
-  } else {
-    const double plain = value_of(number);
-    switch (type) {
-      case Type::Real:
-        new (target) S(static_cast<S>(plain));
-        break;
-      case Type::Bool:
-        new (target) bool(plain != 0.0);
-        break;
-      case Type::Int:
-        new (target) std::int32_t(to_int(plain));
-        break;
-      case Type::Word:
-        new (target) std::uint16_t(static_cast<std::uint16_t>(to_int(plain)));
-        break;
-    }
+  }();
+  switch (type) {
+    case Type::Real:
+      new (target) S(static_cast<S>(plain));
+      break;
+    case Type::Bool:
+      new (target) Bool<S>(plain != decltype(plain)(0.0));
+      break;
+    case Type::Int:
+      new (target) Int<S>(to_int(plain));
+      break;
+    case Type::Word:
+      new (target) Word<S>(int_to_word(to_int(plain)));
+      break;
   }
 }
 
 template <class S>
 NumberOf<S> read_as(const void* source, Type type) {
   using Number = NumberOf<S>;
-  const auto is_true = [](const Bool<S>& truth) {
-    if constexpr (SideBySide<S>) {
-      return select(truth, S(1.0), S(0.0));
-    } else {
-      return Number(truth ? 1.0 : 0.0);
-    }
-  };
   switch (type) {
     case Type::Real:
       return *static_cast<const S*>(source);
     case Type::Bool:
-      return is_true(*static_cast<const Bool<S>*>(source));
+      return select(*static_cast<const Bool<S>*>(source), Number(1.0), Number(0.0));
     case Type::Int:
       return to_real<Number>(*static_cast<const Int<S>*>(source));
     default:

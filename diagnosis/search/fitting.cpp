@@ -15,21 +15,16 @@ void scan(Model& model, Fit& best, Index first, Index count) {
   VectorXd residuals;
   for (Index j = first; j < first + count; ++j) {
     const double middle = best.x[j];
-    const auto at = [&](int step) {
-      VectorXd x = best.x;
-      x[j] = std::clamp(middle * (1.0 + 0.004 * step), model.lower()[j], model.upper()[j]);
-      return x;
-    };
     std::vector<VectorXd> points;
     for (int step = -9; step <= 9; ++step) {
       if (step != 0) {
-        points.push_back(at(step));
+        points.push_back(best.x);
+        points.back()[j] = std::clamp(middle * (1.0 + 0.004 * step), model.lower()[j], model.upper()[j]);
       }
     }
-    model.foresee(std::move(points));
-    for (int step = -9; step <= 9; ++step) {
-      const VectorXd x = at(step);
-      if (step == 0 || !model.residuals(x, residuals)) {
+    model.foresee(points);
+    for (const VectorXd& x : points) {
+      if (!model.residuals(x, residuals)) {
         continue;
       }
       const double cost = cost_of(model, x, residuals, nullptr);

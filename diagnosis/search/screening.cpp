@@ -77,7 +77,7 @@ class Screening : private TriedEffect {
       start.values = std::move(values);
     }
     std::ranges::stable_sort(kept, [](const Start& a, const Start& b) { return a.gain > b.gain; });
-    return std::move(static_cast<TriedEffect&>(*this)).with(std::move(kept));
+    return std::move(*this).with(std::move(kept));
   }
 
   /// What varies smoothly, between the points of its grid and by halves of their distance: an exponential that is off
@@ -221,9 +221,8 @@ class Screening : private TriedEffect {
     }
     foresee(settings);
     MatrixXd steps = MatrixXd::Zero(background().residuals().size(), std::ssize(instants));
-    for (Index k = 0; k < std::ssize(instants); ++k) {
-      values[begin] = instants[static_cast<std::size_t>(k)];
-      if (const VectorXd change = change_at(values); change.size() > 0) {
+    for (Index k = 0; k < std::ssize(settings); ++k) {
+      if (const VectorXd change = change_at(settings[static_cast<std::size_t>(k)]); change.size() > 0) {
         steps.col(k) = change;
       }
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <utility>
 
 namespace hysteron::diagnosis {
 namespace {
@@ -124,15 +125,19 @@ double TriedEffect::small(Index strength, bool linear) const {
 }
 
 void TriedEffect::foresee_changes(const std::vector<VectorXd>& shapes) {
+  if (shapes.empty()) {
+    return;
+  }
   const std::vector<Index> list = strengths();
+  const bool linear = is_linear_there(shapes.front());
+  if (!linear && !are_amplitudes(list)) {
+    return;
+  }
   std::vector<VectorXd> settings;
-  if (!shapes.empty() && (is_linear_there(shapes.front()) || are_amplitudes(list))) {
-    const bool linear = is_linear_there(shapes.front());
-    for (const VectorXd& shape : shapes) {
-      for (const Index j : list) {
-        settings.push_back(shape);
-        settings.back()[j] = small(j, linear);
-      }
+  for (const VectorXd& shape : shapes) {
+    for (const Index j : list) {
+      settings.push_back(shape);
+      settings.back()[j] = small(j, linear);
     }
   }
   foresee(settings);

@@ -10,7 +10,6 @@
 #include <random>
 #include <span>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "blocks/description.hpp"

@@ -54,7 +54,7 @@ bool LoopRun::take_test(Machine<S>& machine, const VectorXd& x, std::span<const 
   }
   machine.reset();
   if (plant_.cut) {
-    machine.set_input(plant_.cut->input, S(0.0));
+    machine.set_input(plant_.cut->input, 0.0);
   }
   largest_ = 0.0;
   for (std::size_t step = 0; step < drive_.steps; ++step) {
@@ -62,9 +62,9 @@ bool LoopRun::take_test(Machine<S>& machine, const VectorXd& x, std::span<const 
     machine.step();
     const S y = machine.value(plant_.output);
     const S u = plant_.effort ? machine.value(*plant_.effort) : S(0.0);
-    const double v = plant_.cut ? plain_value(machine.value(plant_.cut->behind)) : 0.0;
-    response.output[step] = plain_value(y);
-    response.effort[step] = plain_value(u);
+    const double v = plant_.cut ? value_of(machine.value(plant_.cut->behind)) : 0.0;
+    response.output[step] = value_of(y);
+    response.effort[step] = value_of(u);
     largest_ = std::max(largest_, std::fabs(v));
     if (!std::isfinite(response.output[step]) || !std::isfinite(response.effort[step]) || !std::isfinite(v)) {
       return false;
@@ -96,7 +96,7 @@ LoopState LoopRun::take_impulse(Machine<S>& machine, std::span<const Index> colu
     for (std::size_t run = 0; run < 2; ++run) {
       machine.restore(states[run]);
       for (std::size_t step = first; step < last; ++step) {
-        machine.set_input(plant_.cut->input, S(step > 0 ? 0.0 : run == 0 ? put_in : -put_in));
+        machine.set_input(plant_.cut->input, step > 0 ? 0.0 : run == 0 ? put_in : -put_in);
         machine.step();
         const S v = machine.value(plant_.cut->behind);
         if (run == 0) {
@@ -104,7 +104,7 @@ LoopState LoopRun::take_impulse(Machine<S>& machine, std::span<const Index> colu
           continue;
         }
         const S difference = above[step - first] - v;
-        const double h = plain_value(difference) / (2.0 * put_in);
+        const double h = value_of(difference) / (2.0 * put_in);
         if (columns.empty()) {
           response.impulse.push_back(h);
         } else {

@@ -1,18 +1,14 @@
 #include "robots/joint_json.hpp"
 
-#include <cmath>
+#include "support/json_number.hpp"
 
 namespace hysteron::robots {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number_or_null(double number) {
-  return std::isfinite(number) ? Json(number) : Json(nullptr);
-}
-
 Json range_json(const Range& range) {
-  return {number_or_null(range.low), number_or_null(range.high)};
+  return {number_or_null<Json>(range.low), number_or_null<Json>(range.high)};
 }
 
 Json actuator_json(const Actuator& actuator) {
@@ -35,7 +31,7 @@ Json joint_json(const Joint& joint) {
           {"stiffness", joint.stiffness},
           {"offset", joint.offset},
           {"position", range_json(joint.position)},
-          {"speed", number_or_null(joint.speed)},
+          {"speed", number_or_null<Json>(joint.speed)},
           {"actuator", joint.actuator ? actuator_json(*joint.actuator) : Json(nullptr)}};
 }
 

@@ -80,8 +80,8 @@ void check_machine(const DoctorOptions& options) {
   }
 }
 
-/// In three columns of the width of a terminal, 0 for none; where the third would be narrow, below the others. A
-/// command stays in one line, to be copied.
+/// In three columns of the width of a terminal, 0 for none; where the third would be narrow, below the others. The
+/// console breaks what has a line to itself, and leaves rows of three columns as they are.
 std::string findings_text(const std::vector<HostFinding>& findings, std::size_t width) {
   constexpr std::size_t least_third = 30;
   std::size_t widest = 0;
@@ -92,11 +92,10 @@ std::string findings_text(const std::vector<HostFinding>& findings, std::size_t 
   const std::string margin(is_below ? 4 : 14 + widest, ' ');
   std::string text;
   for (const HostFinding& one : findings) {
-    const std::string head = fmt::format("{:<10}  {:<{}}  ", name_of(one.rating), one.name, is_below ? 0 : widest);
-    const std::string found = wrapped(margin + one.found, width);
-    text += is_below ? fmt::format("{}\n{}\n", head.substr(0, head.size() - 2), found)
-                     : fmt::format("{}{}\n", head, found.substr(margin.size()));
-    text += one.why.empty() ? "" : wrapped(margin + one.why, width) + "\n";
+    text += is_below ? fmt::format("{:<10}  {}\n{}{}\n", name_of(one.rating), one.name, margin, one.found)
+                     : fmt::format("{:<10}  {:<{}}  {}\n", name_of(one.rating), one.name, widest,
+                                   wrapped(margin + one.found, width).substr(margin.size()));
+    text += one.why.empty() ? "" : fmt::format("{}{}\n", margin, one.why);
     for (std::size_t begin = 0; begin < one.command.size();) {
       const std::size_t end = std::min(one.command.find('\n', begin), one.command.size());
       text += fmt::format("{}$ {}\n", margin, one.command.substr(begin, end - begin));

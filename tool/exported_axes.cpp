@@ -9,6 +9,7 @@
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "tool/option_values.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -69,15 +70,12 @@ void set_each(const std::vector<std::string>& texts, std::vector<ExportedAxis>& 
   }
 }
 
-double checked_number(const std::string& text, const char* option, bool zero_allowed) {
-  const ParsedNumber number = parse_number(text);
-  const bool fits = number.status == NumberStatus::Finite && (zero_allowed ? number.value >= 0.0 : number.value > 0.0);
-  if (!fits) {
-    throw refusal(
-        fmt::format("{}: a number {} is needed, not {}.", option, zero_allowed ? "from 0 on" : "above 0", text),
-        fmt::format("write {0} 2.5, or {0} JOINT=2.5 for one joint of several.", option));
+double checked_number(const std::string& text, const char* option, const CLI::Validator& check) {
+  if (const std::string fault = check(text); !fault.empty()) {
+    throw refusal(fmt::format("{}: {}.", option, fault),
+                  fmt::format("write {0} 2.5, or {0} JOINT=2.5 for one joint of several.", option));
   }
-  return number.value;
+  return parse_number(text).value;
 }
 
 }  // namespace
@@ -106,10 +104,11 @@ std::vector<ExportedAxis> exported_axes(const AxisTexts& texts) {
     throw refusal(fmt::format("--params {} is of no joint: each --joint states a file of its own.", texts.parameters),
                   "leave --params out, or leave the file out of the joint that it is for.");
   }
-  set_each(texts.gears, axes, "--gear", false,
-           [](ExportedAxis& axis, const std::string& text) { axis.gear = checked_number(text, "--gear", false); });
+  set_each(texts.gears, axes, "--gear", false, [](ExportedAxis& axis, const std::string& text) {
+    axis.gear = checked_number(text, "--gear", number_above_zero());
+  });
   set_each(texts.link_inertias, axes, "--link-inertia", false, [](ExportedAxis& axis, const std::string& text) {
-    axis.link_inertia = checked_number(text, "--link-inertia", true);
+    axis.link_inertia = checked_number(text, "--link-inertia", number_from_zero());
   });
   set_each(texts.records, axes, "--in", true, [](ExportedAxis& axis, const std::string& text) { axis.record = text; });
   return axes;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -29,9 +28,9 @@ bool is_constant(const DrawnPou& pou, const DrawnElement& element) {
                                    variable->remark.find("@param") != std::string::npos;
 }
 
-std::vector<Objection> undecided_assignments(const DrawnPou& pou, const Targets& called) {
+std::vector<Objection> undecided_assignments(const Assigners& assigners) {
   std::vector<Objection> result;
-  for (const auto& [name, elements] : assigners_in(pou, called)) {
+  for (const auto& [name, elements] : assigners) {
     std::set<std::uint64_t> orders;
     for (const DrawnElement* const element : elements) {
       const bool stated = element->order && orders.insert(*element->order).second;
@@ -51,11 +50,11 @@ std::vector<Objection> undecided_assignments(const DrawnPou& pou, const Targets&
 
 }  // namespace
 
-std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, const Targets& assigned) {
+std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, const Assigners& assigners) {
   static const std::set<std::string_view> known{
       tc6::in_variable, tc6::out_variable, tc6::block,      tc6::connector, tc6::continuation,    tc6::contact,
       tc6::coil,        tc6::left_rail,    tc6::right_rail, tc6::comment,   tc6::in_out_variable, "vendorElement"};
-  std::vector<Objection> result = undecided_assignments(pou, assigned);
+  std::vector<Objection> result = undecided_assignments(assigners);
   std::set<std::string> instances;
   for (const DrawnElement& element : pou.elements) {
     const auto object = [&](std::string why, std::string mend) {
@@ -115,8 +114,8 @@ bool hands_back(const DrawnElement& block, std::string_view pin, const Targets& 
   return called != targets.end() && called->second.contains(in_capitals(pin));
 }
 
-std::map<std::string, std::vector<const DrawnElement*>> assigners_in(const DrawnPou& pou, const Targets& called) {
-  std::map<std::string, std::vector<const DrawnElement*>> assigners;
+Assigners assigners_in(const DrawnPou& pou, const Targets& called) {
+  Assigners assigners;
   for (const DrawnElement& element : pou.elements) {
     if (element.kind == tc6::out_variable || element.kind == tc6::coil) {
       assigners[in_capitals(element.text)].push_back(&element);

@@ -29,12 +29,13 @@ using Targets = std::map<std::string, std::set<std::string>>;
 
 /// What assigns each variable of one network, by its name in capitals, as the file has it: output variables, coils, and
 /// blocks that hand a VAR_IN_OUT back.
-[[nodiscard]] std::map<std::string, std::vector<const DrawnElement*>> assigners_in(const DrawnPou& pou,
-                                                                                   const Targets& called);
+using Assigners = std::map<std::string, std::vector<const DrawnElement*>>;
+[[nodiscard]] Assigners assigners_in(const DrawnPou& pou, const Targets& called);
 
 /// Elements that no diagram can express, instances that stand there twice, and targets whose last value no order
 /// states.
-[[nodiscard]] std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, const Targets& assigned);
+[[nodiscard]] std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own,
+                                                   const Assigners& assigners);
 
 /// The variable of the POU that a VAR_IN_OUT of a block may change, in capitals; empty where none is handed over.
 [[nodiscard]] std::string handed_over(const DrawnPou& pou, const DrawnPin& pin);

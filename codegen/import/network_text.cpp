@@ -94,11 +94,12 @@ class Reader {
   }
 
   void refuse_what_is_no_network() {
-    for (const Objection& one : objections_to(pou_, own_, targets_)) {
+    const Assigners assigners = assigners_in(pou_, targets_);
+    for (const Objection& one : objections_to(pou_, own_, assigners)) {
       refuse(*one.element, one.why, one.mend);
     }
-    for (const auto& [name, assigners] : assigners_in(pou_, targets_)) {
-      to_come_.emplace(name, assigners.size());
+    for (const auto& [name, elements] : assigners) {
+      to_come_.emplace(name, elements.size());
     }
   }
 

@@ -391,17 +391,15 @@ TEST(Plcopen, WithoutAnOrderAVariableThatIsAssignedTwiceIsRefused) {
 
 /// An upper block that reads a lower one.
 std::string upper_reads_lower(const std::string& order_of_upper, const std::string& order_of_lower) {
-  return project(
-      R"(<inputVars><variable name="X"><type><LREAL/></type></variable></inputVars>
-         <outputVars><variable name="Y"><type><LREAL/></type></variable></outputVars>
+  return project(input_x + R"(<outputVars><variable name="Y">)" + lreal_variable + R"(</outputVars>
          <localVars><variable name="G"><type><derived name="HY_GAIN"/></type></variable></localVars>)",
-      R"(<inVariable localId="1"><connectionPointOut/><expression>X</expression></inVariable>
+                 R"(<inVariable localId="1"><connectionPointOut/><expression>X</expression></inVariable>
          <block localId="2" typeName="HY_GAIN" instanceName="G" executionOrderId=")" +
-          order_of_upper + R"("><position x="9" y="0"/><inputVariables>
+                     order_of_upper + R"("><position x="9" y="0"/><inputVariables>
            <variable formalParameter="XIN"><connectionPointIn><connection refLocalId="3"/></connectionPointIn></variable>
          </inputVariables><outputVariables><variable formalParameter="XOUT"/></outputVariables></block>
          <block localId="3" typeName="ADD" executionOrderId=")" +
-          order_of_lower + R"("><position x="0" y="9"/><inputVariables>
+                     order_of_lower + R"("><position x="0" y="9"/><inputVariables>
            <variable formalParameter="IN1"><connectionPointIn><connection refLocalId="1"/></connectionPointIn></variable>
            <variable formalParameter="IN2"><connectionPointIn><connection refLocalId="1"/></connectionPointIn></variable>
          </inputVariables></block><outVariable localId="4"><connectionPointIn><connection refLocalId="2" formalParameter="XOUT"/></connectionPointIn><expression>Y</expression></outVariable>)");

@@ -147,15 +147,18 @@ std::string rights_of(const runtime::RunConfig& config, const std::string& unit)
   if (config.modbus) {
     add(std::filesystem::path(config.modbus->lock_file).parent_path());
   }
+  // The user of the service is made at its start and can own no file: the service manager hands them over.
+  const auto hand_over = [&](const char* name, const std::string& path) {
+    if (std::filesystem::path(path).is_absolute()) {
+      rights += fmt::format("LoadCredential={}\n", word(fmt::format("{}:{}", name, path)));
+    }
+  };
   if (config.modbus && config.modbus->tls) {
-    // The user of the service is made at its start and can own no file: the service manager hands them over.
     const auto& tls = *config.modbus->tls;
     for (const auto& [name, path] : {std::pair(runtime::modbus::certificate_credential, tls.certificate),
                                      {runtime::modbus::key_credential, tls.key},
                                      {runtime::modbus::clients_credential, tls.clients}}) {
-      if (std::filesystem::path(path).is_absolute()) {
-        rights += fmt::format("LoadCredential={}\n", word(fmt::format("{}:{}", name, path)));
-      }
+      hand_over(name, path);
     }
   }
   if (config.mqtt) {
@@ -164,17 +167,13 @@ std::string rights_of(const runtime::RunConfig& config, const std::string& unit)
                                      {runtime::modbus::mqtt_certificate_credential, mqtt.certificate},
                                      {runtime::modbus::mqtt_key_credential, mqtt.key},
                                      {runtime::modbus::mqtt_password_credential, mqtt.password_file}}) {
-      if (std::filesystem::path(path).is_absolute()) {
-        rights += fmt::format("LoadCredential={}\n", word(fmt::format("{}:{}", name, path)));
-      }
+      hand_over(name, path);
     }
   }
   if (config.web) {
     for (const auto& [name, path] : {std::pair(runtime::web::token_credential, config.web->token_file),
                                      {runtime::web::read_token_credential, config.web->read_token_file}}) {
-      if (std::filesystem::path(path).is_absolute()) {
-        rights += fmt::format("LoadCredential={}\n", word(fmt::format("{}:{}", name, path)));
-      }
+      hand_over(name, path);
     }
   }
   if (!folders.empty()) {

@@ -54,16 +54,8 @@ struct Numbers {
   std::string refused{};
 };
 
-/// Of a text that is a JSON object; `form` is said where it is none.
-Numbers numbers_in(std::string_view body, const char* form) {
-  nlohmann::json values;
-  try {
-    values = nlohmann::json::parse(body);
-  } catch (const nlohmann::json::out_of_range&) {
-    return {.status = 400, .refused = "A number in the body is beyond what a double holds, 1.8e308."};
-  } catch (const nlohmann::json::parse_error&) {
-    // It stays empty.
-  }
+/// Of a JSON object; `form` is said where it is none.
+Numbers numbers_of(const nlohmann::json& values, const char* form) {
   if (!values.is_object() || values.empty()) {
     return {.status = 400, .refused = form};
   }
@@ -307,7 +299,15 @@ Answer Responder::write(const Request& request) {
 }
 
 Answer Responder::stage(std::string_view body) {
-  const Numbers given = numbers_in(body, "The body is no JSON object of parameters and their values.");
+  nlohmann::json values;
+  try {
+    values = nlohmann::json::parse(body);
+  } catch (const nlohmann::json::out_of_range&) {
+    return refusal(400, "A number in the body is beyond what a double holds, 1.8e308.");
+  } catch (const nlohmann::json::parse_error&) {
+    // It stays empty.
+  }
+  const Numbers given = numbers_of(values, "The body is no JSON object of parameters and their values.");
   if (!given.refused.empty()) {
     return refusal(given.status, given.refused);
   }
@@ -349,7 +349,7 @@ Answer Responder::force(std::string_view body) {
   if (!sessions_.is_open(session)) {
     return refusal(409, "The session is not open: what is forced ends with it, so it needs an open stream.");
   }
-  const Numbers given = numbers_in(asked["inputs"].dump(), form);
+  const Numbers given = numbers_of(asked["inputs"], form);
   if (!given.refused.empty()) {
     return refusal(given.status, given.refused);
   }

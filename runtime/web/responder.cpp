@@ -79,14 +79,14 @@ std::string_view name_of(bool PageRights::*right) {
 
 std::string_view session_of(std::string_view target) {
   constexpr std::string_view key = "?session=";
-  const std::string_view begin = target.substr(0, std::min(target.size(), stream_target.size() + key.size()));
-  const std::string_view name = target.substr(begin.size());
+  if (!target.starts_with(stream_target) || !target.substr(stream_target.size()).starts_with(key)) {
+    return {};
+  }
+  const std::string_view name = target.substr(stream_target.size() + key.size());
   const auto is_sign = [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
   };
-  const bool is_well = begin.starts_with(stream_target) && begin.ends_with(key) && name.size() >= 16 &&
-                       name.size() <= 64 && std::ranges::all_of(name, is_sign);
-  return is_well ? name : std::string_view{};
+  return name.size() >= 16 && name.size() <= 64 && std::ranges::all_of(name, is_sign) ? name : std::string_view{};
 }
 
 void Sessions::force(std::string_view name, std::span<const Force> inputs) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "runtime/config/page_rights.hpp"
 #include "runtime/history/history_trend.hpp"
 #include "runtime/task/staged_parameters.hpp"
 #include "runtime/web/assets.hpp"
@@ -69,10 +70,6 @@ Numbers numbers_of(const nlohmann::json& values, const char* form) {
                                                           : std::optional(value.get<double>()));
   }
   return found;
-}
-
-std::string_view name_of(bool PageRights::*right) {
-  return right == &PageRights::parameters ? "parameters" : right == &PageRights::reset ? "reset" : "force";
 }
 
 }  // namespace
@@ -289,7 +286,7 @@ Answer Responder::write(const Request& request) {
   if (!(access_.rights.*order->right)) {
     return refusal(403, fmt::format("The live page may not do this: \"{}\" is not among the rights of [web] in the "
                                     "run file.",
-                                    name_of(order->right)));
+                                    std::ranges::find(page_rights, order->right, &PageRight::is_given)->name));
   }
   follow_version();
   return order->target == "/api/stage"     ? stage(request.body)

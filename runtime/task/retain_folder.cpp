@@ -12,6 +12,7 @@
 
 #include "runtime/task/retain.hpp"
 #include "support/atomic_file.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -19,23 +20,6 @@ namespace {
 std::string problem(const std::filesystem::path& path) {
   return path.string() + ": " + std::strerror(errno);
 }
-
-/// Closes on every way out.
-class File {
- public:
-  explicit File(int descriptor) : descriptor_(descriptor) {}
-  ~File() {
-    if (descriptor_ >= 0) {
-      (void)close(descriptor_);
-    }
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  [[nodiscard]] int get() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
 
 bool write_all(int file, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
@@ -89,8 +73,8 @@ void RetainFolder::open() {
 
 std::optional<std::vector<std::byte>> RetainFolder::read(std::size_t slot) {
   const auto refuse = [&] { throw std::system_error(errno, std::generic_category(), path_of(slot).string()); };
-  const File file(::open(path_of(slot).c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0) {
+  const Descriptor file(::open(path_of(slot).c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.number() < 0) {
     if (errno != ENOENT) {
       refuse();
     }
@@ -99,7 +83,7 @@ std::optional<std::vector<std::byte>> RetainFolder::read(std::size_t slot) {
   std::vector<std::byte> bytes;
   std::array<std::byte, 4096> part{};
   for (;;) {
-    const auto count = ::read(file.get(), part.data(), part.size());
+    const auto count = ::read(file.number(), part.data(), part.size());
     if (count < 0 && errno != EINTR) {
       refuse();
     }
@@ -123,8 +107,8 @@ std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> byt
   const auto path = path_of(slot);
   const auto fresh = std::filesystem::path(path).concat(".new");
   {
-    const File file(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
-    if (file.get() < 0 || !write_all(file.get(), bytes) || fsync(file.get()) != 0) {
+    const Descriptor file(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+    if (file.number() < 0 || !write_all(file.number(), bytes) || fsync(file.number()) != 0) {
       return problem(fresh);
     }
   }

@@ -9,10 +9,10 @@
 #include <cstddef>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
 #include "runtime/task/retain.hpp"
 #include "support/atomic_file.hpp"
-#include "support/descriptor.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -52,23 +52,18 @@ std::filesystem::path RetainFolder::path_of(std::size_t slot) const {
   return folder_ / (slot == 0 ? "retain_a" : "retain_b");
 }
 
-RetainFolder::~RetainFolder() {
-  if (held_ >= 0) {
-    (void)close(held_);
-  }
-}
-
 void RetainFolder::open() {
   std::error_code problem;  // the next call says what is wrong
   std::filesystem::create_directories(folder_, problem);
   if (is_want_of_room(problem.value())) {
     return;  // nothing can have been retained there; each state that is written tries again
   }
-  held_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (held_ < 0 || faccessat(AT_FDCWD, folder_.c_str(), W_OK | X_OK, AT_EACCESS) != 0 ||
-      flock(held_, LOCK_EX | LOCK_NB) != 0) {
+  Descriptor held(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!held.is_open() || faccessat(AT_FDCWD, folder_.c_str(), W_OK | X_OK, AT_EACCESS) != 0 ||
+      flock(held.number(), LOCK_EX | LOCK_NB) != 0) {
     throw std::system_error(errno, std::generic_category(), folder_.string());
   }
+  held_ = std::move(held);
 }
 
 std::optional<std::vector<std::byte>> RetainFolder::read(std::size_t slot) {
@@ -97,7 +92,7 @@ std::optional<std::vector<std::byte>> RetainFolder::read(std::size_t slot) {
 std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> bytes) {
   std::error_code unknown;
   std::filesystem::create_directories(folder_, unknown);
-  if (held_ < 0) {
+  if (!held_.is_open()) {
     try {
       open();
     } catch (const std::system_error& refused) {

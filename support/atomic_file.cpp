@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "support/descriptor.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
 
@@ -41,31 +42,6 @@ namespace fs = std::filesystem;
   }
   throw InputError(error::unwritable_file, place, cause, mend);
 }
-
-/// A file descriptor that closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  Descriptor(Descriptor&&) = delete;
-  Descriptor& operator=(Descriptor&&) = delete;
-  ~Descriptor() {
-    if (number_ >= 0) {
-      ::close(number_);
-    }
-  }
-  [[nodiscard]] int number() const { return number_; }
-  /// Some file systems report a failed write only here.
-  [[nodiscard]] bool close() {
-    const int number = number_;
-    number_ = -1;
-    return ::close(number) == 0;
-  }
-
- private:
-  int number_;
-};
 
 bool write_all(int descriptor, std::string_view contents) {
   while (!contents.empty()) {

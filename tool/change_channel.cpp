@@ -25,7 +25,6 @@
 namespace hysteron::tool {
 namespace {
 
-using runtime::modbus::Descriptor;
 using std::chrono::milliseconds;
 using SteadyClock = std::chrono::steady_clock;
 

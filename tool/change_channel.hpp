@@ -10,7 +10,7 @@
 #include <string_view>
 #include <thread>
 
-#include "runtime/modbus/descriptor.hpp"
+#include "support/descriptor.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron::tool {
@@ -34,12 +34,12 @@ class ChangeListener {
 
  private:
   void serve();
-  void serve_one(const runtime::modbus::Descriptor& client) const;
+  void serve_one(const Descriptor& client) const;
 
   std::string path_;
   Answer answer_;
-  runtime::modbus::Descriptor socket_{};
-  runtime::modbus::Descriptor end_{};  ///< readable once it ends
+  Descriptor socket_{};
+  Descriptor end_{};  ///< readable once it ends
   std::thread thread_;
 };
 

@@ -147,35 +147,26 @@ std::string rights_of(const runtime::RunConfig& config, const std::string& unit)
   if (config.modbus) {
     add(std::filesystem::path(config.modbus->lock_file).parent_path());
   }
-  if (config.modbus && config.modbus->tls) {
-    // The user of the service is made at its start and can own no file: the service manager hands them over.
-    const auto& tls = *config.modbus->tls;
-    for (const auto& [name, path] : {std::pair(runtime::modbus::certificate_credential, tls.certificate),
-                                     {runtime::modbus::key_credential, tls.key},
-                                     {runtime::modbus::clients_credential, tls.clients}}) {
-      if (std::filesystem::path(path).is_absolute()) {
-        rights += fmt::format("LoadCredential={}\n", word(fmt::format("{}:{}", name, path)));
-      }
+  // The user of the service is made at its start and can own no file: the service manager hands these over.
+  const auto hand_over = [&](const char* name, const std::string& path) {
+    if (std::filesystem::path(path).is_absolute()) {
+      rights += fmt::format("LoadCredential={}\n", word(fmt::format("{}:{}", name, path)));
     }
+  };
+  if (config.modbus && config.modbus->tls) {
+    hand_over(runtime::modbus::certificate_credential, config.modbus->tls->certificate);
+    hand_over(runtime::modbus::key_credential, config.modbus->tls->key);
+    hand_over(runtime::modbus::clients_credential, config.modbus->tls->clients);
   }
   if (config.mqtt) {
-    const auto& mqtt = *config.mqtt;
-    for (const auto& [name, path] : {std::pair(runtime::modbus::mqtt_ca_credential, mqtt.ca),
-                                     {runtime::modbus::mqtt_certificate_credential, mqtt.certificate},
-                                     {runtime::modbus::mqtt_key_credential, mqtt.key},
-                                     {runtime::modbus::mqtt_password_credential, mqtt.password_file}}) {
-      if (std::filesystem::path(path).is_absolute()) {
-        rights += fmt::format("LoadCredential={}\n", word(fmt::format("{}:{}", name, path)));
-      }
-    }
+    hand_over(runtime::modbus::mqtt_ca_credential, config.mqtt->ca);
+    hand_over(runtime::modbus::mqtt_certificate_credential, config.mqtt->certificate);
+    hand_over(runtime::modbus::mqtt_key_credential, config.mqtt->key);
+    hand_over(runtime::modbus::mqtt_password_credential, config.mqtt->password_file);
   }
   if (config.web) {
-    for (const auto& [name, path] : {std::pair(runtime::web::token_credential, config.web->token_file),
-                                     {runtime::web::read_token_credential, config.web->read_token_file}}) {
-      if (std::filesystem::path(path).is_absolute()) {
-        rights += fmt::format("LoadCredential={}\n", word(fmt::format("{}:{}", name, path)));
-      }
-    }
+    hand_over(runtime::web::token_credential, config.web->token_file);
+    hand_over(runtime::web::read_token_credential, config.web->read_token_file);
   }
   if (!folders.empty()) {
     rights += fmt::format(

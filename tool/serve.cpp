@@ -71,7 +71,7 @@ int serve(const ServeOptions& options, Console& console) {
   runtime::refuse_to_overwrite_inputs(config, inputs);
   warnings.add_all(config.warnings);
   console.report(warnings);
-  const auto page = web ? runtime::web::page_beside(*web, config, program->shape()) : runtime::web::PageBeside();
+  const auto page = web ? runtime::web::page_beside(*web, config, program->shape()) : runtime::BesideTask();
   std::unique_ptr<runtime::ChangeableProgram> changeable;
   if (config.online_change) {
     changeable = std::make_unique<runtime::ChangeableProgram>(std::move(program));

@@ -76,14 +76,14 @@ bool are_bits_of_one_register(const RunConfig& config, const DeviceLink& a, cons
 
 /// Out of the way of devices and clients: select has room for the descriptors below FD_SETSIZE alone. Where the limits
 /// do not let it, it stays where it is.
-void move_up(modbus::Descriptor& socket) {
+void move_up(Descriptor& socket) {
   rlimit limit{};
   if (::getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < limit.rlim_max) {
     limit.rlim_cur = limit.rlim_max;
     (void)::setrlimit(RLIMIT_NOFILE, &limit);
   }
   if (const int higher = ::fcntl(socket.number(), F_DUPFD_CLOEXEC, FD_SETSIZE); higher >= 0) {
-    socket = modbus::Descriptor(higher);
+    socket = Descriptor(higher);
   }
 }
 
@@ -101,25 +101,25 @@ Address address_of(const std::string& name) {
   return address;
 }
 
-modbus::Descriptor new_socket() {
-  return modbus::Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+Descriptor new_socket() {
+  return Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
 }
 
-modbus::Descriptor socket_or_throw() {
-  modbus::Descriptor socket = new_socket();
+Descriptor socket_or_throw() {
+  Descriptor socket = new_socket();
   if (!socket.is_open()) {
     throw std::system_error(errno, std::system_category(), "a socket to claim an output by");
   }
   return socket;
 }
 
-bool bind_to(const modbus::Descriptor& socket, const std::string& name) {
+bool bind_to(const Descriptor& socket, const std::string& name) {
   const Address address = address_of(name);
   return ::bind(socket.number(), reinterpret_cast<const sockaddr*>(&address.text), address.size) == 0;
 }
 
 /// False where another has the name.
-bool bind_or_throw(const modbus::Descriptor& socket, const std::string& name) {
+bool bind_or_throw(const Descriptor& socket, const std::string& name) {
   const bool is_bound = bind_to(socket, name);
   if (!is_bound && errno != EADDRINUSE) {
     throw std::system_error(errno, std::system_category(), "the name by which an output is claimed");
@@ -127,13 +127,13 @@ bool bind_or_throw(const modbus::Descriptor& socket, const std::string& name) {
   return is_bound;
 }
 
-bool connect_to(const modbus::Descriptor& socket, const std::string& name) {
+bool connect_to(const Descriptor& socket, const std::string& name) {
   const Address address = address_of(name);
   return ::connect(socket.number(), reinterpret_cast<const sockaddr*>(&address.text), address.size) == 0;
 }
 
 /// Who listens at the other end: nothing where that is neither this user nor root, whose word would not count.
-std::optional<pid_t> trusted_peer(const modbus::Descriptor& socket) {
+std::optional<pid_t> trusted_peer(const Descriptor& socket) {
   ucred peer{};
   socklen_t size = sizeof peer;
   const bool is_known = ::getsockopt(socket.number(), SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
@@ -146,7 +146,7 @@ std::string guard_name(const std::string& name) {
 }
 
 /// Whether who is at the other end is still there: nobody sends anything.
-bool is_there(const modbus::Descriptor& socket) {
+bool is_there(const Descriptor& socket) {
   char nothing = 0;
   return ::recv(socket.number(), &nothing, 1, MSG_DONTWAIT) < 0 && errno == EAGAIN;
 }
@@ -182,7 +182,7 @@ std::optional<OutputClaims::Holder> OutputClaims::claim() {
   if (own_ || !sockets_.empty()) {
     return own_;  // or claimed before
   }
-  std::vector<modbus::Descriptor> sockets;
+  std::vector<Descriptor> sockets;
   for (const Claim& claim : claims_) {
     sockets.push_back(socket_or_throw());
     move_up(sockets.back());
@@ -208,7 +208,7 @@ std::optional<pid_t> OutputClaims::guard_of(const Claim& claim) {
     return asked_->guard;
   }
   asked_.reset();
-  modbus::Descriptor socket = socket_or_throw();
+  Descriptor socket = socket_or_throw();
   if (!connect_to(socket, guard_name(claim.name))) {
     return errno == EAGAIN ? std::optional<pid_t>(0) : std::nullopt;
   }
@@ -220,7 +220,7 @@ std::optional<pid_t> OutputClaims::guard_of(const Claim& claim) {
 }
 
 bool OutputClaims::is_of_a_task(const Claim& claim) {
-  const modbus::Descriptor socket = socket_or_throw();
+  const Descriptor socket = socket_or_throw();
   return connect_to(socket, claim.name) && trusted_peer(socket);
 }
 
@@ -240,7 +240,7 @@ void OutputClaims::guard_listens() {
 }
 
 void OutputClaims::drain() const noexcept {
-  for (const modbus::Descriptor& socket : sockets_) {
+  for (const Descriptor& socket : sockets_) {
     for (int taken = 0; taken >= 0 && socket.is_open();) {
       taken = ::accept4(socket.number(), nullptr, nullptr, SOCK_CLOEXEC);
       if (taken >= 0) {

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "runtime/config/run_config.hpp"
-#include "runtime/modbus/descriptor.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::runtime {
 
@@ -55,14 +55,14 @@ class OutputClaims {
   [[nodiscard]] static bool is_of_a_task(const Claim& claim);
 
   std::vector<Claim> claims_{};
-  std::optional<Holder> own_{};                ///< where two outputs of the run file meet
-  std::vector<modbus::Descriptor> sockets_{};  ///< as claims_, where claimed
-  std::vector<modbus::Descriptor> guards_{};   ///< in the guard's process, once its task is gone
+  std::optional<Holder> own_{};        ///< where two outputs of the run file meet
+  std::vector<Descriptor> sockets_{};  ///< as claims_, where claimed
+  std::vector<Descriptor> guards_{};   ///< in the guard's process, once its task is gone
   bool passes_over_foreign_ = false;
   /// To the guard that is waited for: it ends with the guard, so that each start asks once and not in each try.
   struct Asked {
     std::string name{};
-    modbus::Descriptor socket;
+    Descriptor socket;
     pid_t guard = 0;
   };
   std::optional<Asked> asked_{};

@@ -1,8 +1,10 @@
 #include "runtime/config/web_reader.hpp"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
+#include "runtime/config/page_rights.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::runtime {
@@ -20,15 +22,12 @@ WebConfig read_web(TomlReader table, Diagnostics& found) {
   table.read("rights", words);
   web.rights = {.parameters = false, .reset = false, .force = false};
   for (const std::string& word : words) {
-    bool* const right = word == "parameters" ? &web.rights.parameters
-                        : word == "reset"    ? &web.rights.reset
-                        : word == "force"    ? &web.rights.force
-                                             : nullptr;
-    if (right == nullptr) {
+    const auto* const right = std::ranges::find(page_rights, word, &PageRight::name);
+    if (right == page_rights.end()) {
       found.error(error::wrong_run_value, table.place("rights"), "The live page has no right \"" + word + "\".",
                   "use some of: parameters, reset, force.");
     } else {
-      *right = true;
+      web.rights.*right->is_given = true;
     }
   }
   return web;

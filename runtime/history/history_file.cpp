@@ -52,7 +52,7 @@ HistoryLock::HistoryLock(const std::filesystem::path& file) {
   std::error_code unknown;  // the next call says what is wrong
   std::filesystem::create_directories(file.parent_path(), unknown);
   const auto lock = beside(file, ".lock");
-  held_ = modbus::Descriptor(::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  held_ = Descriptor(::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
   if (held_.number() < 0 || ::flock(held_.number(), LOCK_EX | LOCK_NB) != 0) {
     const int cause = errno;
     throw DatabaseError(fmt::format("{}: {}", lock.string(), std::generic_category().message(cause)),

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "database/sqlite.hpp"
-#include "runtime/modbus/descriptor.hpp"
 #include "runtime/point.hpp"
 #include "runtime/task/sample_tap.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::runtime {
 
@@ -40,7 +40,7 @@ class HistoryLock {
   explicit HistoryLock(const std::filesystem::path& file);
 
  private:
-  modbus::Descriptor held_{};
+  Descriptor held_{};
 };
 
 class HistoryFile {

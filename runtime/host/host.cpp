@@ -274,32 +274,29 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
                         inputs);
   }
   // Each is read by the next start, so what is written after it must not take its place either.
+  const auto claim = [&](const std::string& file, const std::string& way_out, const Place& place,
+                         const char* named_by) {
+    refuse_to_overwrite({.file = file, .mend = way_out, .place = place}, inputs);
+    inputs.push_back({.file = file, .named_by = named_by});
+  };
   if (config.modbus) {
-    const std::string& file = config.modbus->lock_file;
-    refuse_to_overwrite({.file = file, .mend = mend, .place = config.modbus->place}, inputs);
-    inputs.push_back({.file = file, .named_by = "[modbus] lock_file"});
+    claim(config.modbus->lock_file, mend, config.modbus->place, "[modbus] lock_file");
   }
   if (config.retain) {
     const RetainFolder folder(config.retain->folder);
     for (const std::size_t slot : {std::size_t{0}, std::size_t{1}}) {
-      const std::string file = folder.path_of(slot).string();
-      refuse_to_overwrite({.file = file, .mend = "name another folder in the run file.", .place = config.retain->place},
-                          inputs);
-      inputs.push_back({.file = file, .named_by = "[retain] folder"});
+      claim(folder.path_of(slot).string(), "name another folder in the run file.", config.retain->place,
+            "[retain] folder");
     }
   }
   if (config.history) {
     for (const char* const ending : {"", "-wal", "-shm", ".lock"}) {
-      const std::string file = config.history->file + ending;
-      refuse_to_overwrite({.file = file, .mend = mend, .place = config.history->place}, inputs);
-      inputs.push_back({.file = file, .named_by = "[history] file"});
+      claim(config.history->file + ending, mend, config.history->place, "[history] file");
     }
   }
   if (config.mqtt && !config.mqtt->file.empty()) {
     for (const char* const ending : {"", "-wal", "-shm"}) {
-      const std::string file = config.mqtt->file + ending;
-      refuse_to_overwrite({.file = file, .mend = mend, .place = config.mqtt->place}, inputs);
-      inputs.push_back({.file = file, .named_by = "[mqtt] file"});
+      claim(config.mqtt->file + ending, mend, config.mqtt->place, "[mqtt] file");
     }
   }
   if (config.trace) {

@@ -19,12 +19,14 @@
 
 namespace hysteron::runtime {
 
+/// Makes what else serves the door beside the task, and adds to the status line where. Its life is that of the task.
+using BesideTask = std::function<std::shared_ptr<void>(PointDoor& door, std::string& where)>;
+
 struct HostOptions {
   std::string how{};         ///< compiled, interpreted, generated: for the status line
   std::uint64_t cycles = 0;  ///< ends after so many; 0: when it is asked to
   bool virtual_time = false;
-  /// Makes what else serves the door beside the task, and adds to the status line where. Its life is that of the task.
-  std::function<std::shared_ptr<void>(PointDoor& door, std::string& where)> beside{};
+  BesideTask beside{};
   /// Where the version of the diagram may change: the program itself, and what hands on to it who wishes a change, as
   /// `beside`. Where the run file has no [online_change], it is not asked for.
   ChangeableProgram* changeable = nullptr;

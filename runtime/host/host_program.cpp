@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "runtime/config/run_config.hpp"
-#include "runtime/host/host.hpp"
 #include "runtime/host/notices.hpp"
 #include "runtime/host/served_map.hpp"
 #include "runtime/modbus/map_text.hpp"

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <string>
 
 #include "runtime/config/run_config.hpp"
-#include "runtime/point.hpp"
+#include "runtime/host/host.hpp"
 #include "runtime/task/step_program.hpp"
 
 namespace hysteron::runtime {
@@ -15,10 +14,8 @@ struct HostProgram {
   std::string name{};  ///< of the program, for its help
   /// Where the run file names a lock file that is not there yet, the addresses are those of this one.
   std::string addresses{};
-  /// Gives HostOptions::beside: what serves the live page. None where the host was generated without one.
-  std::function<std::function<std::shared_ptr<void>(PointDoor& door, std::string& where)>(const RunConfig& config,
-                                                                                          const ProgramShape& shape)>
-      page{};
+  /// Gives what serves the live page. None where the host was generated without one.
+  std::function<BesideTask(const RunConfig& config, const ProgramShape& shape)> page{};
 };
 
 /// Gives the exit code: 0 it ran and ended as asked; 1 a fault ended it or was there at its end; 2 an error in the

@@ -21,7 +21,7 @@
 #include <thread>
 #include <utility>
 
-#include "runtime/modbus/descriptor.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::runtime::modbus {
 namespace {

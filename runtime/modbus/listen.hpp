@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "runtime/modbus/descriptor.hpp"
+#include "support/descriptor.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron::runtime::modbus {

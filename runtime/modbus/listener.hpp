@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "runtime/modbus/descriptor.hpp"
+#include "support/descriptor.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron::runtime::modbus {

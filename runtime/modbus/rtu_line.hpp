@@ -9,8 +9,8 @@
 #include <string>
 
 #include "runtime/modbus/client_link.hpp"
-#include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/rtu_station.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::runtime::modbus {
 

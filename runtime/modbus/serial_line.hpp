@@ -4,7 +4,7 @@
 #include <string>
 
 #include "runtime/modbus/client_link.hpp"
-#include "runtime/modbus/descriptor.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::runtime::modbus {
 

@@ -19,11 +19,11 @@
 #include <utility>
 
 #include "runtime/modbus/allow_list.hpp"
-#include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/listen.hpp"
 #include "runtime/modbus/listener.hpp"
 #include "runtime/modbus/server_counters.hpp"
 #include "runtime/modbus/transport.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::runtime::modbus {
 namespace {

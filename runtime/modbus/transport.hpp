@@ -10,8 +10,8 @@
 #include <string>
 
 #include "runtime/modbus/connection.hpp"
-#include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/responder.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::runtime::modbus {
 

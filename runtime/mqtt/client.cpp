@@ -15,7 +15,7 @@
 #include <thread>
 #include <utility>
 
-#include "runtime/modbus/descriptor.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -71,7 +71,7 @@ struct MqttClient::Connection {
 
   MqttLink link;
   mosquitto* handle;
-  modbus::Descriptor begun;
+  Descriptor begun;
   std::atomic<bool> has_begun{false};
   int result = 0;  ///< of connecting
   int system = 0;  ///< errno of connecting

@@ -52,7 +52,6 @@ MqttSender::MqttSender(MqttSettings settings, std::unique_ptr<MqttDialect> diale
 
 /// What an earlier run left waits before all that comes.
 void MqttSender::open_file() {
-  keep_at_ = time_.steady() + file_retry;
   std::vector<std::string> names;
   for (const MqttPoint& point : settings_.rows.points) {
     names.push_back(point.name);

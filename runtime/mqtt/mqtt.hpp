@@ -17,7 +17,6 @@
 #include <thread>
 #include <vector>
 
-#include "runtime/modbus/descriptor.hpp"
 #include "runtime/mqtt/client.hpp"
 #include "runtime/mqtt/dialect.hpp"
 #include "runtime/mqtt/outbox.hpp"
@@ -26,6 +25,7 @@
 #include "runtime/task/remarks.hpp"
 #include "runtime/task/sample_tap.hpp"
 #include "runtime/task/task_time.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::runtime {
 
@@ -117,7 +117,7 @@ class Mqtt {
 
   std::chrono::milliseconds interval_;
   MqttSender sender_;
-  modbus::Descriptor over_;
+  Descriptor over_;
   std::thread thread_;
 };
 

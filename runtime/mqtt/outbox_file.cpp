@@ -94,20 +94,25 @@ OutboxFile::OutboxFile(const std::filesystem::path& file, const std::vector<std:
   std::error_code unknown;  // the next call says what is wrong
   std::filesystem::create_directories(file.parent_path(), unknown);
   try {
-    database_.emplace(opened(file));
+    open(file);
     read(points);
   } catch (const DatabaseError& problem) {
     if (problem.trouble() != Trouble::Damaged) {
       throw;
     }
     insert_.reset();
+    delete_.reset();
     database_.reset();
     rows_ = {};
     first_ = end_ = 0;
     aside_ = database::put_aside(file);
-    database_.emplace(opened(file));
+    open(file);
     read(points);
   }
+}
+
+void OutboxFile::open(const std::filesystem::path& file) {
+  database_.emplace(opened(file));
   insert_.emplace(database_->prepared("INSERT INTO waiting (number, utc_ms, cycle, \"values\") VALUES (?, ?, ?, ?)"));
   delete_.emplace(database_->prepared("DELETE FROM waiting WHERE number < ?"));
 }
@@ -152,12 +157,10 @@ void OutboxFile::write_anew(const std::vector<std::string>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     named.bind(1, static_cast<std::int64_t>(i)).bind(2, points[i]).run();
   }
-  insert_.emplace(database_->prepared("INSERT INTO waiting (number, utc_ms, cycle, \"values\") VALUES (?, ?, ?, ?)"));
   end_ = first_;
   for (const MqttRow& row : rows_) {
     insert(end_++, row);
   }
-  insert_.reset();
   all.commit();
 }
 

@@ -36,6 +36,7 @@ class OutboxFile {
   void follow(std::uint64_t first, const std::vector<const MqttRow*>& added);
 
  private:
+  void open(const std::filesystem::path& file);
   void read(const std::vector<std::string>& points);
   void write_anew(const std::vector<std::string>& points);
   void insert(std::uint64_t number, const MqttRow& row);

@@ -21,6 +21,7 @@
 
 #include "runtime/task/exchange.hpp"
 #include "runtime/task/step_program.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::runtime {
 
@@ -72,7 +73,6 @@ class RetainFolder final : public RetainFiles {
   explicit RetainFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
   RetainFolder(const RetainFolder&) = delete;
   RetainFolder& operator=(const RetainFolder&) = delete;
-  ~RetainFolder() override;
   /// Makes the folder where it is missing, and holds it against a second task for as long as this lives. Where the disk
   /// has no room for it, it is made and held by the first state that finds some. Throws
   /// std::system_error where it cannot be written to; std::errc::resource_unavailable_try_again where another task
@@ -86,7 +86,7 @@ class RetainFolder final : public RetainFiles {
 
  private:
   std::filesystem::path folder_;
-  int held_ = -1;
+  Descriptor held_{};
 };
 
 /// What a start does with the values of another diagram, of an edited one, or of another engine.

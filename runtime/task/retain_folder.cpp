@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
 #include "runtime/task/retain.hpp"
 #include "support/atomic_file.hpp"
@@ -19,23 +20,6 @@ namespace {
 std::string problem(const std::filesystem::path& path) {
   return path.string() + ": " + std::strerror(errno);
 }
-
-/// Closes on every way out.
-class File {
- public:
-  explicit File(int descriptor) : descriptor_(descriptor) {}
-  ~File() {
-    if (descriptor_ >= 0) {
-      (void)close(descriptor_);
-    }
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  [[nodiscard]] int get() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
 
 bool write_all(int file, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
@@ -68,29 +52,24 @@ std::filesystem::path RetainFolder::path_of(std::size_t slot) const {
   return folder_ / (slot == 0 ? "retain_a" : "retain_b");
 }
 
-RetainFolder::~RetainFolder() {
-  if (held_ >= 0) {
-    (void)close(held_);
-  }
-}
-
 void RetainFolder::open() {
   std::error_code problem;  // the next call says what is wrong
   std::filesystem::create_directories(folder_, problem);
   if (is_want_of_room(problem.value())) {
     return;  // nothing can have been retained there; each state that is written tries again
   }
-  held_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (held_ < 0 || faccessat(AT_FDCWD, folder_.c_str(), W_OK | X_OK, AT_EACCESS) != 0 ||
-      flock(held_, LOCK_EX | LOCK_NB) != 0) {
+  Descriptor held(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!held.is_open() || faccessat(AT_FDCWD, folder_.c_str(), W_OK | X_OK, AT_EACCESS) != 0 ||
+      flock(held.number(), LOCK_EX | LOCK_NB) != 0) {
     throw std::system_error(errno, std::generic_category(), folder_.string());
   }
+  held_ = std::move(held);
 }
 
 std::optional<std::vector<std::byte>> RetainFolder::read(std::size_t slot) {
   const auto refuse = [&] { throw std::system_error(errno, std::generic_category(), path_of(slot).string()); };
-  const File file(::open(path_of(slot).c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0) {
+  const Descriptor file(::open(path_of(slot).c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.number() < 0) {
     if (errno != ENOENT) {
       refuse();
     }
@@ -99,7 +78,7 @@ std::optional<std::vector<std::byte>> RetainFolder::read(std::size_t slot) {
   std::vector<std::byte> bytes;
   std::array<std::byte, 4096> part{};
   for (;;) {
-    const auto count = ::read(file.get(), part.data(), part.size());
+    const auto count = ::read(file.number(), part.data(), part.size());
     if (count < 0 && errno != EINTR) {
       refuse();
     }
@@ -113,7 +92,7 @@ std::optional<std::vector<std::byte>> RetainFolder::read(std::size_t slot) {
 std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> bytes) {
   std::error_code unknown;
   std::filesystem::create_directories(folder_, unknown);
-  if (held_ < 0) {
+  if (!held_.is_open()) {
     try {
       open();
     } catch (const std::system_error& refused) {
@@ -123,8 +102,8 @@ std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> byt
   const auto path = path_of(slot);
   const auto fresh = std::filesystem::path(path).concat(".new");
   {
-    const File file(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
-    if (file.get() < 0 || !write_all(file.get(), bytes) || fsync(file.get()) != 0) {
+    const Descriptor file(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+    if (file.number() < 0 || !write_all(file.number(), bytes) || fsync(file.number()) != 0) {
       return problem(fresh);
     }
   }

@@ -22,7 +22,7 @@ constexpr const char* faults =
     "0 none, 1 hang, 2 crash, 3 not finite, 4 stale input, 5 lost link, 6 missed cycle, 7 stop, 8 lost client, "
     "9 not safe, 10 lost guard";
 
-/// In the order in which publish() gives their values.
+/// In the order in which status_values() gives their values.
 constexpr std::array statuses{
     Status{"task.state", PointType::uint16, "1", "0 starting, 1 running, 2 faulted, 3 stopped"},
     Status{"task.fault", PointType::uint16, "1", faults},

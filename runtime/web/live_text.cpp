@@ -8,6 +8,7 @@
 #include <span>
 #include <string_view>
 
+#include "runtime/config/page_rights.hpp"
 #include "runtime/modbus/value_bits.hpp"
 #include "support/json_number.hpp"
 
@@ -80,14 +81,11 @@ std::string description_text(const Subject& subject, const LiveView& view, const
                      {"unit", signal.unit}});
   }
   json rights = json::array();
-  const auto add_right = [&](const char* name, bool is_given) {
-    if (access.can_write() && is_given) {
-      rights.push_back(name);
+  for (const PageRight& right : page_rights) {
+    if (access.can_write() && access.rights.*right.is_given) {
+      rights.push_back(right.name);
     }
-  };
-  add_right("parameters", access.rights.parameters);
-  add_right("reset", access.rights.reset);
-  add_right("force", access.rights.force);
+  }
   return text_of({{"name", subject.name},
                   {"period", static_cast<double>(subject.period) * 1e-9},
                   {"version", view.version},

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "runtime/config/page_rights.hpp"
 #include "runtime/history/history_trend.hpp"
 #include "runtime/task/staged_parameters.hpp"
 #include "runtime/web/assets.hpp"
@@ -54,16 +55,8 @@ struct Numbers {
   std::string refused{};
 };
 
-/// Of a text that is a JSON object; `form` is said where it is none.
-Numbers numbers_in(std::string_view body, const char* form) {
-  nlohmann::json values;
-  try {
-    values = nlohmann::json::parse(body);
-  } catch (const nlohmann::json::out_of_range&) {
-    return {.status = 400, .refused = "A number in the body is beyond what a double holds, 1.8e308."};
-  } catch (const nlohmann::json::parse_error&) {
-    // It stays empty.
-  }
+/// Of a JSON object; `form` is said where it is none.
+Numbers numbers_of(const nlohmann::json& values, const char* form) {
   if (!values.is_object() || values.empty()) {
     return {.status = 400, .refused = form};
   }
@@ -79,22 +72,18 @@ Numbers numbers_in(std::string_view body, const char* form) {
   return found;
 }
 
-std::string_view name_of(bool PageRights::*right) {
-  return right == &PageRights::parameters ? "parameters" : right == &PageRights::reset ? "reset" : "force";
-}
-
 }  // namespace
 
 std::string_view session_of(std::string_view target) {
   constexpr std::string_view key = "?session=";
-  const std::string_view begin = target.substr(0, std::min(target.size(), stream_target.size() + key.size()));
-  const std::string_view name = target.substr(begin.size());
+  if (!target.starts_with(stream_target) || !target.substr(stream_target.size()).starts_with(key)) {
+    return {};
+  }
+  const std::string_view name = target.substr(stream_target.size() + key.size());
   const auto is_sign = [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
   };
-  const bool is_well = begin.starts_with(stream_target) && begin.ends_with(key) && name.size() >= 16 &&
-                       name.size() <= 64 && std::ranges::all_of(name, is_sign);
-  return is_well ? name : std::string_view{};
+  return name.size() >= 16 && name.size() <= 64 && std::ranges::all_of(name, is_sign) ? name : std::string_view{};
 }
 
 void Sessions::force(std::string_view name, std::span<const Force> inputs) {
@@ -297,7 +286,7 @@ Answer Responder::write(const Request& request) {
   if (!(access_.rights.*order->right)) {
     return refusal(403, fmt::format("The live page may not do this: \"{}\" is not among the rights of [web] in the "
                                     "run file.",
-                                    name_of(order->right)));
+                                    std::ranges::find(page_rights, order->right, &PageRight::is_given)->name));
   }
   follow_version();
   return order->target == "/api/stage"     ? stage(request.body)
@@ -307,7 +296,15 @@ Answer Responder::write(const Request& request) {
 }
 
 Answer Responder::stage(std::string_view body) {
-  const Numbers given = numbers_in(body, "The body is no JSON object of parameters and their values.");
+  nlohmann::json values;
+  try {
+    values = nlohmann::json::parse(body);
+  } catch (const nlohmann::json::out_of_range&) {
+    return refusal(400, "A number in the body is beyond what a double holds, 1.8e308.");
+  } catch (const nlohmann::json::parse_error&) {
+    // It stays empty.
+  }
+  const Numbers given = numbers_of(values, "The body is no JSON object of parameters and their values.");
   if (!given.refused.empty()) {
     return refusal(given.status, given.refused);
   }
@@ -349,7 +346,7 @@ Answer Responder::force(std::string_view body) {
   if (!sessions_.is_open(session)) {
     return refusal(409, "The session is not open: what is forced ends with it, so it needs an open stream.");
   }
-  const Numbers given = numbers_in(asked["inputs"].dump(), form);
+  const Numbers given = numbers_of(asked["inputs"], form);
   if (!given.refused.empty()) {
     return refusal(given.status, given.refused);
   }

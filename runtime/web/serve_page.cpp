@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <utility>
 
 #include "runtime/host/notices.hpp"
@@ -56,7 +57,7 @@ std::optional<ServerOptions> page_server_options(const RunConfig& config, const 
   });
 }
 
-PageBeside page_beside(const ServerOptions& options, const RunConfig& config, const ProgramShape& shape) {
+BesideTask page_beside(const ServerOptions& options, const RunConfig& config, const ProgramShape& shape) {
   const HistoryConfig history = config.history.value_or(HistoryConfig{});
   const Subject subject{
       .name = shape.name, .period = shape.period, .history = history.file, .history_points = history.points};
@@ -67,9 +68,9 @@ PageBeside page_beside(const ServerOptions& options, const RunConfig& config, co
   };
 }
 
-PageBeside page_of_run_file(const RunConfig& config, const ProgramShape& shape) {
+BesideTask page_of_run_file(const RunConfig& config, const ProgramShape& shape) {
   const auto options = page_server_options(config, {});
-  return options ? page_beside(*options, config, shape) : PageBeside();
+  return options ? page_beside(*options, config, shape) : BesideTask();
 }
 
 }  // namespace hysteron::runtime::web

@@ -2,13 +2,11 @@
 // generated host have in common.
 #pragma once
 
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "runtime/config/run_config.hpp"
-#include "runtime/point.hpp"
+#include "runtime/host/host.hpp"
 #include "runtime/task/step_program.hpp"
 #include "runtime/web/server.hpp"
 
@@ -25,11 +23,9 @@ struct PageOptions {
 /// as the credentials `web-token` and `web-read-token`, which then count.
 [[nodiscard]] std::optional<ServerOptions> page_server_options(const RunConfig& config, const PageOptions& options);
 
-/// As HostOptions::beside.
-using PageBeside = std::function<std::shared_ptr<void>(PointDoor& door, std::string& where)>;
-[[nodiscard]] PageBeside page_beside(const ServerOptions& options, const RunConfig& config, const ProgramShape& shape);
+[[nodiscard]] BesideTask page_beside(const ServerOptions& options, const RunConfig& config, const ProgramShape& shape);
 
 /// Both, of a host whose run file alone counts; empty where that names no address.
-[[nodiscard]] PageBeside page_of_run_file(const RunConfig& config, const ProgramShape& shape);
+[[nodiscard]] BesideTask page_of_run_file(const RunConfig& config, const ProgramShape& shape);
 
 }  // namespace hysteron::runtime::web

@@ -21,9 +21,9 @@
 #include <thread>
 #include <utility>
 
-#include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/listener.hpp"
 #include "runtime/web/responder.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::runtime::web {
 namespace {

@@ -1,16 +1,15 @@
 // A history whose writer is killed while it writes; run in the tests and, longer, in the soak.
 #pragma once
 
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <csignal>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 
 #include "tests/runtime/history/history_bench.hpp"
+#include "tests/support/killed_writer.hpp"
 
 namespace hysteron::runtime::test {
 
@@ -25,34 +24,18 @@ struct KilledHistory {
 inline KilledHistory kill_history(const std::filesystem::path& file, int number, int transactions,
                                   useconds_t microseconds) {
   constexpr std::uint64_t rows_at_once = 50;
-  KilledHistory result;
-  std::array<int, 2> ends{};
-  if (::pipe(ends.data()) != 0) {
-    return result;
-  }
-  const pid_t child = ::fork();
-  if (child == 0) {
+  const auto write = [&](const auto& tell) {
     HistoryBench bench(file, 1, 100'000'000);
     bench.settings().plan.run.key = std::to_string(number);
     for (bench.start();;) {
       bench.run(rows_at_once);
       bench.turn();
-      const std::uint64_t done = bench.count().done;
-      if (::write(ends[1], &done, sizeof done) != sizeof done) {
-        ::_exit(1);
-      }
+      tell(bench.count().done);
     }
-  }
-  ::close(ends[1]);
-  const auto hear = [&] { return ::read(ends[0], &result.confirmed, sizeof result.confirmed) > 0; };
-  while (transactions-- > 0 && hear()) {
-  }
-  ::usleep(microseconds);
-  ::kill(child, SIGKILL);
-  ::waitpid(child, nullptr, 0);
-  while (hear()) {
-  }
-  ::close(ends[0]);
+  };
+  KilledHistory result;
+  result.confirmed =
+      told_before_kill<std::uint64_t>(transactions, std::chrono::microseconds(microseconds), write).value_or(0);
   HistoryReader reader(file);
   const auto found = reader.stretches({.run = reader.runs().back().run}).stretches;
   result.rows = found.empty() ? 0 : found.back().rows;

@@ -22,9 +22,9 @@
 
 #include "runtime/host/host.hpp"
 #include "runtime/host/served_map.hpp"
-#include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/device.hpp"
 #include "runtime/modbus/server.hpp"
+#include "support/descriptor.hpp"
 #include "support/diagnostic.hpp"
 #include "tests/runtime/modbus/free_port.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
@@ -78,7 +78,7 @@ class HostProcess {
     if (::pipe(ends.data()) != 0) {
       std::abort();
     }
-    said_ = modbus::Descriptor(ends[0]);
+    said_ = Descriptor(ends[0]);
     process_ = ::fork();
     if (process_ == 0) {
       (void)::dup2(::fileno(told_.get()), STDERR_FILENO);
@@ -182,7 +182,7 @@ class HostProcess {
   struct Close {
     void operator()(std::FILE* file) const { (void)std::fclose(file); }
   };
-  modbus::Descriptor said_;
+  Descriptor said_;
   std::unique_ptr<std::FILE, Close> told_{std::tmpfile()};
   std::string before_;
   pid_t process_ = 0;

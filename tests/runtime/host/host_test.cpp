@@ -21,9 +21,9 @@
 #include "runtime/config/output_claims.hpp"
 #include "runtime/config/run_config.hpp"
 #include "runtime/modbus/address_text.hpp"
-#include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/device.hpp"
 #include "runtime/modbus/listen.hpp"
+#include "support/descriptor.hpp"
 #include "tests/runtime/host/host_process.hpp"
 #include "tests/runtime/modbus/tls_files.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -240,7 +240,7 @@ TEST(Host, ServesOpenPlcsAddresses) {
 TEST(Host, TellsTheServiceManagerThatItIsReadyLivesAndStops) {
   const hysteron::test::ScratchFolder folder;
   const std::string name = folder / "notify";
-  const modbus::Descriptor manager(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const Descriptor manager(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   std::strncpy(address.sun_path, name.c_str(), sizeof address.sun_path - 1);

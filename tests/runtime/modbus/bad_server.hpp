@@ -11,8 +11,8 @@
 #include <string>
 #include <thread>
 
-#include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/listen.hpp"
+#include "support/descriptor.hpp"
 #include "tests/runtime/modbus/client_socket.hpp"
 #include "tests/runtime/modbus/readable.hpp"
 
@@ -57,8 +57,6 @@ class BadServer {
   [[nodiscard]] std::uint64_t faults() const { return faults_; }
 
  private:
-  using Descriptor = runtime::modbus::Descriptor;
-
   void run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       if (fault_ == Fault::black_hole) {

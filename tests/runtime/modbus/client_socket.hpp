@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/modbus/descriptor.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::test {
 
@@ -125,7 +125,7 @@ class ClientSocket {
   void reset() {
     const linger now{1, 0};
     ::setsockopt(socket_.number(), SOL_SOCKET, SO_LINGER, &now, sizeof now);
-    socket_ = runtime::modbus::Descriptor();
+    socket_ = Descriptor();
   }
 
  private:
@@ -172,7 +172,7 @@ class ClientSocket {
     return left > 0 && ::poll(&one, 1, static_cast<int>(left)) > 0;
   }
 
-  runtime::modbus::Descriptor socket_;
+  Descriptor socket_;
   std::chrono::milliseconds patience_;
   bool connected_ = false;
   std::unique_ptr<ssl_st, Free> tls_;

@@ -14,9 +14,9 @@
 #include <thread>
 #include <vector>
 
-#include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/frame.hpp"
 #include "runtime/modbus/listen.hpp"
+#include "support/descriptor.hpp"
 #include "tests/runtime/modbus/client_socket.hpp"
 #include "tests/runtime/modbus/readable.hpp"
 
@@ -49,8 +49,6 @@ class HalfDevice {
   }
 
  private:
-  using Descriptor = runtime::modbus::Descriptor;
-
   void run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       if (!readable(listening_)) {

@@ -15,9 +15,9 @@
 #include <cstring>
 #include <string>
 
-#include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/device.hpp"
 #include "runtime/modbus/server.hpp"
+#include "support/descriptor.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
 #include "tests/support/exit_code.hpp"
 #include "tests/support/soon.hpp"
@@ -47,7 +47,7 @@ inline ifreq request_to(const char* name) {
 }
 
 inline void bring_up_loopback() {
-  const runtime::modbus::Descriptor any(::socket(AF_INET, SOCK_DGRAM, 0));
+  const Descriptor any(::socket(AF_INET, SOCK_DGRAM, 0));
   ifreq request = request_to("lo");
   request.ifr_flags = IFF_UP | IFF_RUNNING;
   (void)::ioctl(any.number(), SIOCSIFFLAGS, &request);
@@ -55,7 +55,7 @@ inline void bring_up_loopback() {
 
 /// The loopback has the late address, too, from now on.
 inline void give_address() {
-  const runtime::modbus::Descriptor any(::socket(AF_INET, SOCK_DGRAM, 0));
+  const Descriptor any(::socket(AF_INET, SOCK_DGRAM, 0));
   ifreq request = request_to("lo:1");
   sockaddr_in address{};
   address.sin_family = AF_INET;

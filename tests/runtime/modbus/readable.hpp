@@ -3,12 +3,12 @@
 
 #include <poll.h>
 
-#include "runtime/modbus/descriptor.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::test {
 
 /// Within a moment that is short enough to see in between that the server is to stop.
-inline bool readable(const runtime::modbus::Descriptor& socket) {
+inline bool readable(const Descriptor& socket) {
   pollfd one{socket.number(), POLLIN, 0};
   return ::poll(&one, 1, 5) > 0;
 }

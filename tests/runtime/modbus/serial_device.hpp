@@ -17,8 +17,8 @@
 #include <thread>
 #include <vector>
 
-#include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/responder.hpp"
+#include "support/descriptor.hpp"
 
 namespace hysteron::test {
 
@@ -52,7 +52,7 @@ class PseudoLine {
     std::array<char, 128> name{};
     ::ptsname_r(other_.number(), name.data(), name.size());
     path_ = name.data();
-    keep_open_ = runtime::modbus::Descriptor(::open(path_.c_str(), O_RDWR | O_NOCTTY));  // or it hangs up in between
+    keep_open_ = Descriptor(::open(path_.c_str(), O_RDWR | O_NOCTTY));  // or it hangs up in between
     termios raw{};
     ::tcgetattr(keep_open_.number(), &raw);
     ::cfmakeraw(&raw);
@@ -81,8 +81,8 @@ class PseudoLine {
   }
 
  private:
-  runtime::modbus::Descriptor other_;
-  runtime::modbus::Descriptor keep_open_;
+  Descriptor other_;
+  Descriptor keep_open_;
   std::string path_;
 };
 

@@ -168,7 +168,7 @@ TEST(PublishingToNobody, ASilentPortIsLeft) {
 /// A network that swallows packets: the system's own connect waits for minutes. A queue of connections that is full
 /// does the same.
 TEST(PublishingToNobody, AConnectThatHangsIsSaidAndHoldsUpNothing) {
-  const modbus::Descriptor listener(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const Descriptor listener(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -177,7 +177,7 @@ TEST(PublishingToNobody, AConnectThatHangsIsSaidAndHoldsUpNothing) {
   ASSERT_EQ(::bind(listener.number(), general, length), 0);
   ASSERT_EQ(::getsockname(listener.number(), general, &length), 0);
   ASSERT_EQ(::listen(listener.number(), 0), 0);
-  std::vector<modbus::Descriptor> fillers;
+  std::vector<Descriptor> fillers;
   for (int i = 0; i < 3; ++i) {
     fillers.emplace_back(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     (void)::connect(fillers.back().number(), general, length);

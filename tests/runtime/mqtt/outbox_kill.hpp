@@ -1,17 +1,18 @@
 // Rows that wait on the disk while their writer is killed; run in the tests and, longer, in the soak.
 #pragma once
 
-#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
-#include <csignal>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 
 #include "runtime/mqtt/outbox.hpp"
 #include "runtime/mqtt/outbox_file.hpp"
 #include "tests/runtime/namespaces.hpp"
+#include "tests/support/killed_writer.hpp"
 
 namespace hysteron::runtime::test {
 
@@ -34,13 +35,7 @@ inline MqttRow numbered_row(std::uint64_t number) {
 /// and then for some microseconds more. Goes on from what the file has. To be called while the process has one thread.
 inline KilledOutbox kill_outbox(const std::filesystem::path& path, int transactions, useconds_t microseconds) {
   using Told = std::array<std::uint64_t, 2>;
-  KilledOutbox result;
-  std::array<int, 2> ends{};
-  if (::pipe(ends.data()) != 0) {
-    return result;
-  }
-  const pid_t child = ::fork();
-  if (child == 0) {
+  const auto write = [&](const auto& tell) {
     OutboxFile file(path, {"U", "Y"});
     Outbox outbox(10'000'000, 1'000'000'000, file.first());
     for (const MqttRow& row : file.rows()) {
@@ -56,25 +51,12 @@ inline KilledOutbox kill_outbox(const std::filesystem::path& path, int transacti
         (void)outbox.confirm(number);
       }
       file.follow(outbox.first(), outbox.rows_from(std::max(file.end(), outbox.first()), 0));
-      const Told told{outbox.first(), file.end()};
-      if (::write(ends[1], told.data(), sizeof told) != sizeof told) {
-        ::_exit(1);
-      }
+      tell({outbox.first(), file.end()});
     }
-  }
-  ::close(ends[1]);
-  Told told{};
-  const auto hear = [&] { return ::read(ends[0], told.data(), sizeof told) == sizeof told; };
-  while (transactions-- > 0 && hear()) {
-  }
-  ::usleep(microseconds);
-  ::kill(child, SIGKILL);
-  ::waitpid(child, nullptr, 0);
-  while (hear()) {
-  }
-  ::close(ends[0]);
-  result.first = told[0];
-  result.end = told[1];
+  };
+  const Told told =
+      told_before_kill<Told>(transactions, std::chrono::microseconds(microseconds), write).value_or(Told{});
+  KilledOutbox result{.first = told[0], .end = told[1]};
   const OutboxFile file(path, {"U", "Y"});
   result.found = file.rows().size();
   // A row more may be gone, or there, than was told of before the kill.

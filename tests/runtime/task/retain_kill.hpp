@@ -2,12 +2,8 @@
 // damage to a slot.
 #pragma once
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
-#include <csignal>
-#include <ctime>
+#include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <vector>
@@ -15,6 +11,7 @@
 #include "runtime/task/retain.hpp"
 #include "tests/runtime/namespaces.hpp"
 #include "tests/runtime/task/accumulator.hpp"
+#include "tests/support/killed_writer.hpp"
 
 namespace hysteron::runtime::test {
 
@@ -27,10 +24,7 @@ struct KillResult {
 
 /// Each state that is retained is its own sequence number, so that what comes back can be judged.
 inline KillResult kill_while_retaining(const std::filesystem::path& folder, std::int64_t after) {
-  std::array<int, 2> pipe_ends{};
-  (void)pipe(pipe_ends.data());
-  const pid_t child = fork();
-  if (child == 0) {
+  const auto write = [&](const auto& tell) {
     RetainFolder files(folder);
     const Recovery start = recover(files, "accumulator", MismatchPolicy::refuse);
     std::uint64_t number = start.sequence;
@@ -40,27 +34,16 @@ inline KillResult kill_while_retaining(const std::filesystem::path& folder, std:
       RetainedValues values{.sequence = number, .layout = "accumulator"};
       values.parameters = {static_cast<double>(number), -static_cast<double>(number)};
       values.state.assign(20'000, static_cast<std::byte>(number & 0xFF));
-      if (!files.write(slot, encode_slot(values)).empty() || write(pipe_ends[1], &number, 8) != 8) {
-        _exit(1);
+      if (!files.write(slot, encode_slot(values)).empty()) {
+        return;
       }
+      tell(number);
       slot = 1 - slot;
     }
-  }
-  (void)close(pipe_ends[1]);
+  };
   // From the first slot on, so that a slow machine kills no child that has not begun.
   KillResult result;
-  std::uint64_t number = 0;
-  if (read(pipe_ends[0], &number, 8) == 8) {
-    result.confirmed = number;
-  }
-  const timespec wait{.tv_sec = 0, .tv_nsec = static_cast<long>(after)};
-  (void)nanosleep(&wait, nullptr);
-  (void)kill(child, SIGKILL);
-  (void)waitpid(child, nullptr, 0);
-  while (read(pipe_ends[0], &number, 8) == 8) {
-    result.confirmed = number;
-  }
-  (void)close(pipe_ends[0]);
+  result.confirmed = told_before_kill<std::uint64_t>(1, std::chrono::nanoseconds(after), write).value_or(0);
   RetainFolder files(folder);
   const Recovery recovery = recover(files, "accumulator", MismatchPolicy::refuse);
   result.recovered = recovery.sequence;

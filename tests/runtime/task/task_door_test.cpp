@@ -4,12 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <limits>
 
 #include "runtime/task/task.hpp"
 #include "tests/runtime/task/accumulator.hpp"
+#include "tests/runtime/task/slow_clock.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/support/soon.hpp"
 
@@ -252,23 +252,15 @@ TEST(ForcedInput, EndsWithAReset) {
 
 /// Until the reset nothing can be forced, and after it nothing is.
 TEST(ForcedInput, EndsWhereTheWatchdogTrips) {
-  class SlowClock final : public Clock {
-   public:
-    std::int64_t now() noexcept override { return now_; }
-    void sleep_until(std::int64_t time) noexcept override { now_ = std::max(now_, time); }
-    std::int64_t own_cpu() noexcept override { return now_; }
-    std::int64_t stolen() noexcept override { return 0; }
-    std::int64_t now_ = 0;
-  };
   ForceBench bench({.loop = {.cycles = 6},
                     .watchdog = {.time = 500'000, .sensitivity = 1},
                     .inputs = {{}},
                     .outputs = {{.value = -1.0}, {}}});
-  SlowClock clock;
+  test::SlowClock clock;
   std::vector<double> forced;
   bench.program.during_step = [&](std::span<double> /*outputs*/) {
     forced.push_back(bench.forced());
-    clock.now_ += forced.size() == 2 ? 600'000 : 100;
+    clock.pass(forced.size() == 2 ? 600'000 : 100);
   };
   EXPECT_EQ(bench.force(100.0), "");
   const std::atomic<bool> stop{false};

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "tests/runtime/task/linked_sets.hpp"
+#include "tests/runtime/task/slow_clock.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -334,22 +335,14 @@ TEST(Task, AnOutputThatIsNoNumberIsSafeByItself) {
 }
 
 TEST(Task, ATrippedWatchdogLastsUntilTheReset) {
-  class SlowClock final : public Clock {
-   public:
-    std::int64_t now() noexcept override { return now_; }
-    void sleep_until(std::int64_t time) noexcept override { now_ = std::max(now_, time); }
-    std::int64_t own_cpu() noexcept override { return now_; }
-    std::int64_t stolen() noexcept override { return 0; }
-    std::int64_t now_ = 0;
-  };
   Accumulator program;
-  SlowClock clock;
+  test::SlowClock clock;
   Field field;
   auto with_watchdog = settings(6);
   with_watchdog.watchdog = {.time = 500'000, .sensitivity = 1};
   Task task(program, with_watchdog, {.field = &field});
   int step = 0;
-  program.during_step = [&](std::span<double>) { clock.now_ += ++step == 2 ? 600'000 : 100; };
+  program.during_step = [&](std::span<double>) { clock.pass(++step == 2 ? 600'000 : 100); };
   std::atomic<bool> stop{false};
   (void)task.run(clock, stop);
   EXPECT_EQ(field.written, (std::vector<double>{1.0, 2.0, -1.0, -1.0, -1.0, -1.0, -1.0}));

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace hysteron::runtime::modbus {
+namespace hysteron {
 
 class Descriptor {
  public:
@@ -25,9 +25,11 @@ class Descriptor {
   }
   [[nodiscard]] int number() const { return number_; }
   [[nodiscard]] bool is_open() const { return number_ >= 0; }
+  /// For who has to know whether all is well: some file systems report a failed write only here.
+  [[nodiscard]] bool close() { return ::close(std::exchange(number_, -1)) == 0; }
 
  private:
   int number_ = -1;
 };
 
-}  // namespace hysteron::runtime::modbus
+}  // namespace hysteron

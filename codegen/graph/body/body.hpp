@@ -127,6 +127,8 @@ class Body {
   bool round(const Counting& count, double at);
   void loop(const language::body::Loop& node, language::Span span);
   void again(const language::body::Loop& node, language::Span span, int turn);
+  void unrolled(const std::function<void()>& all_rounds);
+  Value left();
   void narrow(language::ExpressionId condition, bool holds);
   [[nodiscard]] bool is_plain(language::ExpressionId id) const;
 

@@ -98,7 +98,7 @@ std::optional<Body::Counting> Body::counting(const syntax::For& node, language::
     if (computer_.constant(given, bound->least)) {
       bound->greatest = bound->least;
     } else {
-      const bool unknown = is_unsigned_32(given.type) && given.low < 0;
+      const bool unknown = given.beyond_dint();
       bound->least = unknown ? 0.0 : static_cast<double>(given.low);
       bound->greatest = static_cast<double>(unknown ? highest(given.type) : given.high);
     }
@@ -323,7 +323,7 @@ void Body::narrow(language::ExpressionId id, bool holds) {
     Value& kept = *state_.values[place->leaf];
     double number = 0.0;
     const bool compared = is_integer(kept.type) && other.valid() && is_integer(other.type) &&
-                          computer_.constant(other, number) && !(is_unsigned_32(kept.type) && kept.low < 0);
+                          computer_.constant(other, number) && !kept.beyond_dint();
     if (!compared) {
       continue;
     }

@@ -62,7 +62,7 @@ void Body::make_pins(Place& place, const std::string& path, language::Span span)
   const auto add = [&](const Field& field) {
     auto part = std::make_unique<Place>();
     part->path = path + "." + upper(field.name);
-    const Plain plain = plain_of_pin(field.type, place.type->timer);
+    const Plain plain = plain_of_pin(field.type, place.type->by_clock != nullptr);
     part->leaf = make_leaf(plain, plain == Plain::Time ? field.preset * 1000.0 : field.preset, part->path, span, true);
     place.parts.push_back(std::move(part));
     place.members.push_back({.name = upper(field.name)});

@@ -45,13 +45,14 @@ def alike(text, plain, own):
     """`text` with its calls replaced, innermost first; `plain` is the same without comments. `own`: names of its own."""
     result, at = "", 0
     while match := CALL.search(plain, at):
-        depth, end, starts = 1, match.end(), [match.end()]
+        depth, end, cuts = 1, match.end(), [match.end() - 1]  # at its brackets and commas
         while depth and end < len(plain):
             depth += {"(": 1, ")": -1}.get(plain[end], 0)
             end += 1
             if depth == 1 and plain[end - 1] == ",":
-                starts.append(end)
-        arguments = [alike(text[a:b], plain[a:b], own).strip() for a, b in zip(starts, [one - 1 for one in starts[1:]] + [end - 1])]
+                cuts.append(end - 1)
+        cuts.append(end - 1)
+        arguments = [alike(text[a + 1:b], plain[a + 1:b], own).strip() for a, b in zip(cuts, cuts[1:])]
         name = match.group(1).upper()
         call = None if name in own else replaced(name, arguments)
         result += text[at:match.start()] + (call or f"{match.group(0)}{', '.join(arguments)})")

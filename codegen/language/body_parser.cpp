@@ -261,6 +261,13 @@ void BodyParser::skip_to(std::string_view closing) {
   accept(Symbol::Semicolon);
 }
 
+/// The end of a statement of several lines.
+bool BodyParser::end_with(std::string_view closing) {
+  const bool ended = expect(closing);
+  accept(Symbol::Semicolon);  // which some leave out here
+  return ended;
+}
+
 bool BodyParser::while_statement(body::Loop& node) {
   node.condition = expression();
   if (node.condition == no_expression || !expect("DO")) {
@@ -268,9 +275,7 @@ bool BodyParser::while_statement(body::Loop& node) {
     return true;
   }
   rounds(node.statements);
-  const bool ended = expect("END_WHILE");
-  accept(Symbol::Semicolon);  // which some leave out here
-  return ended;
+  return end_with("END_WHILE");
 }
 
 bool BodyParser::repeat_statement(body::Loop& node) {
@@ -281,9 +286,7 @@ bool BodyParser::repeat_statement(body::Loop& node) {
     return true;
   }
   accept(Symbol::Semicolon);  // which some write here
-  const bool ended = expect("END_REPEAT");
-  accept(Symbol::Semicolon);
-  return ended;
+  return end_with("END_REPEAT");
 }
 
 bool BodyParser::if_statement(body::If& node) {
@@ -304,9 +307,7 @@ bool BodyParser::if_statement(body::If& node) {
   if (accept("ELSE")) {
     statements(node.otherwise);
   }
-  const bool ended = expect("END_IF");
-  accept(Symbol::Semicolon);  // which some leave out here
-  return ended;
+  return end_with("END_IF");
 }
 
 bool BodyParser::label(body::Label& one) {
@@ -348,9 +349,7 @@ bool BodyParser::case_statement(body::Case& node) {
     accept(Symbol::Colon);
     statements(node.otherwise);
   }
-  const bool ended = expect("END_CASE");
-  accept(Symbol::Semicolon);  // which some leave out here
-  return ended;
+  return end_with("END_CASE");
 }
 
 bool BodyParser::for_statement(body::For& node) {
@@ -363,9 +362,7 @@ bool BodyParser::for_statement(body::For& node) {
     return true;
   }
   rounds(node.statements);
-  const bool ended = expect("END_FOR");
-  accept(Symbol::Semicolon);  // which some leave out here
-  return ended;
+  return end_with("END_FOR");
 }
 
 /// An assignment or a call.

@@ -55,6 +55,7 @@ class BodyParser {
   bool named(body::Statement& statement);
   void skip_statement();
   void skip_to(std::string_view closing);
+  bool end_with(std::string_view closing);
   [[nodiscard]] bool ends_list() const;
   void finish(body::Unit& unit, std::string_view end);
 

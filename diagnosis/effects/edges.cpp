@@ -62,16 +62,16 @@ class BlockEdges {
       }
     }
     for (const auto& [name, span] : computed_) {
-      result.push_back(
-          {.name = name, .definition = index_, .local = name, .source = std::string(text(span)), .reads = {span}});
+      result.push_back({.name = name,
+                        .definition = index_,
+                        .local = name,
+                        .source = std::string(source_.text_of(span)),
+                        .reads = {span}});
     }
     return joined(std::move(result));
   }
 
  private:
-  [[nodiscard]] std::string_view text(Span span) const {
-    return std::string_view(*source_.text).substr(span.offset, span.length);
-  }
   [[nodiscard]] const Declared* find(std::string_view name) const {
     const auto found = definition_.by_name.find(language::upper(name));
     return found == definition_.by_name.end() ? nullptr : &definition_.variables[found->second];
@@ -142,7 +142,7 @@ class BlockEdges {
   /// A vector of the text is read by all of its elements at one place, which no edit of one of them can hold; one value
   /// that stands for every element is read there once.
   void take_read(const std::string& name, const Read& read) {
-    if (element_of(name) && !text(read.span).ends_with(']')) {
+    if (element_of(name) && !source_.text_of(read.span).ends_with(']')) {
       of_vectors_.insert(name);
     }
     std::vector<Read>& reads = reads_[name];

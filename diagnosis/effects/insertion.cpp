@@ -165,7 +165,7 @@ std::string with_sum_outside(const language::SourceFile& source, std::uint32_t d
     for (const language::Argument& argument : call->arguments) {
       if (language::same_name(argument.pin.text, "XIN")) {
         const Span span = source.expressions[argument.value].span;
-        input = source.text->substr(span.offset, span.length);
+        input = source.text_of(span);
         edits.push_back({.span = span, .text = "0.0"});
       }
     }

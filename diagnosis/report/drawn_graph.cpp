@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <string_view>
 
 #include "codegen/language/syntax.hpp"
 
@@ -25,7 +24,7 @@ std::string text_of(const Graph& graph, const Node& node) {
     return std::string(info(node.op).name);
   }
   std::string text;
-  for (const char c : std::string_view(*graph.source->text).substr(node.span.offset, node.span.length)) {
+  for (const char c : graph.source->text_of(node.span)) {
     const bool space = c == ' ' || c == '\n' || c == '\t' || c == '\r';
     if (!space || (!text.empty() && text.back() != ' ')) {
       text += space ? ' ' : c;

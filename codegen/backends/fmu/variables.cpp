@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
 #include "codegen/backends/c/dialect.hpp"
 #include "codegen/backends/c_family/names.hpp"
+#include "codegen/backends/shared/port_groups.hpp"
 #include "codegen/graph/units.hpp"
 
 namespace hysteron {
@@ -29,37 +30,6 @@ double as_float(double value) {
   return static_cast<double>(static_cast<float>(value));
 }
 
-/// The array that an element belongs to, in.x of in.x[3], and its place in it; an empty name where it is none.
-std::pair<std::string_view, std::size_t> array_of(std::string_view member) {
-  const auto bracket = member.ends_with(']') ? member.rfind('[') : std::string_view::npos;
-  std::size_t place = 0;
-  if (bracket == std::string_view::npos ||
-      std::from_chars(member.data() + bracket + 1, member.data() + member.size() - 1, place).ec != std::errc()) {
-    return {};
-  }
-  return {member.substr(0, bracket), place};
-}
-
-/// The elements of an array as one variable: they differ in their start values alone.
-std::vector<FmuVariable> joined(const std::vector<FmuVariable>& elements) {
-  std::vector<FmuVariable> list;
-  for (const FmuVariable& one : elements) {
-    const auto [array, place] = array_of(one.member);
-    FmuVariable* const last = list.empty() ? nullptr : &list.back();
-    if (!array.empty() && place > 0 && last != nullptr && last->array && array_of(last->member).first == array &&
-        last->start.size() == place) {
-      last->start.push_back(one.start.front());
-      continue;
-    }
-    list.push_back(one);
-    if (!array.empty() && place == 0) {
-      list.back().array = true;
-      list.back().name.resize(one.name.rfind('['));
-    }
-  }
-  return list;
-}
-
 }  // namespace
 
 std::vector<FmuVariable> fmu_variables(const Program& program, const FmuOptions& options) {
@@ -68,39 +38,58 @@ std::vector<FmuVariable> fmu_variables(const Program& program, const FmuOptions&
   const StructLayout layout(graph, routine, c_words());
   const Layout& names = layout.names();
   std::vector<FmuVariable> list;
-  for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
-    list.push_back(of_port(graph.inputs[i], FmuVariable::Role::Input, "in", names.inputs[i]));
-  }
-  for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
-    list.push_back(of_port(graph.outputs[i], FmuVariable::Role::Output, "out", names.outputs[i]));
-  }
+  // `array` is the name of the array that this is the element `place` of: they differ in their start values alone.
+  const auto add = [&](FmuVariable one, std::string_view array, std::size_t place) {
+    const bool joined = !array.empty() && options.version == FmiVersion::Three;
+    if (joined && place > 0) {
+      list.back().start.push_back(one.start.front());
+      return;
+    }
+    if (joined) {
+      one.name = array;
+      one.array = true;
+    }
+    list.push_back(std::move(one));
+  };
+  const auto add_ports = [&](const std::vector<Port>& ports, FmuVariable::Role role, std::string_view member,
+                             const auto& members) {
+    for (const PortGroup& group : port_groups(ports)) {
+      for (std::uint32_t k = 0; k < group.length; ++k) {
+        const std::size_t i = group.first + k;
+        add(of_port(ports[i], role, member, members[i]), group.is_array() ? group.name : std::string_view(), k);
+      }
+    }
+  };
+  add_ports(graph.inputs, FmuVariable::Role::Input, "in", names.inputs);
+  add_ports(graph.outputs, FmuVariable::Role::Output, "out", names.outputs);
   const auto units = units::Solution(graph, program.schedule).parameters();
   for (std::size_t i = 0; i < graph.parameters.size(); ++i) {
     const Parameter& parameter = graph.parameters[i];
     const Member& member = names.parameters[i];
     for (std::size_t k = 0; k < parameter.value.size(); ++k) {
       const bool array = parameter.field.length > 1;
-      list.push_back({.name = array ? fmt::format("{}[{}]", parameter.path, k + 1) : parameter.path,
-                      .role = FmuVariable::Role::Parameter,
-                      .type = parameter.field.type,
-                      .unit = units[i],
-                      .meaning = std::string(parameter.field.meaning),
-                      .start = {parameter.value[k]},
-                      .minimum = parameter.field.minimum,
-                      .maximum = parameter.field.maximum,
-                      .above_minimum = parameter.field.above_minimum,
-                      .member = fmt::format("params.{}{}{}{}", member.group, member.group.empty() ? "" : ".",
-                                            member.name, array ? fmt::format("[{}]", k) : "")});
+      add({.name = array ? fmt::format("{}[{}]", parameter.path, k + 1) : parameter.path,
+           .role = FmuVariable::Role::Parameter,
+           .type = parameter.field.type,
+           .unit = units[i],
+           .meaning = std::string(parameter.field.meaning),
+           .start = {parameter.value[k]},
+           .minimum = parameter.field.minimum,
+           .maximum = parameter.field.maximum,
+           .above_minimum = parameter.field.above_minimum,
+           .member = fmt::format("params.{}{}{}{}", member.group, member.group.empty() ? "" : ".", member.name,
+                                 array ? fmt::format("[{}]", k) : "")},
+          array ? std::string_view(parameter.path) : std::string_view(), k);
     }
   }
   for (FmuVariable& one : list) {
     if (options.float32 && one.type == Type::Real) {
-      one.start.front() = as_float(one.start.front());
+      std::ranges::transform(one.start, one.start.begin(), as_float);
       one.minimum = as_float(one.minimum);
       one.maximum = as_float(one.maximum);
     }
   }
-  return options.version == FmiVersion::Three ? joined(list) : list;
+  return list;
 }
 
 }  // namespace hysteron

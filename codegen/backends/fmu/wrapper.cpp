@@ -81,10 +81,10 @@ typedef {real} fmu_real_type;
 std::string fmu_wrapper(const FmuModel& model, std::span<const FmuVariable> variables, const FmuOptions& options) {
   const bool three = options.version == FmiVersion::Three;
   std::string text =
-      fmt::format(fmt::runtime(wrapper_head), fmt::arg("version", three ? "3.0" : "2.0"), fmt::arg("name", model.identifier),
-                  fmt::arg("flags", cpp_numeric_flags), fmt::arg("real", options.float32 ? "float" : "double"),
-                  fmt::arg("token", model.token), fmt::arg("count", variables.size()),
-                  fmt::arg("period", real_literal(model.sample_time)));
+      fmt::format(fmt::runtime(wrapper_head), fmt::arg("version", three ? "3.0" : "2.0"),
+                  fmt::arg("name", model.identifier), fmt::arg("flags", cpp_numeric_flags),
+                  fmt::arg("real", options.float32 ? "float" : "double"), fmt::arg("token", model.token),
+                  fmt::arg("count", variables.size()), fmt::arg("period", real_literal(model.sample_time)));
   append(text, three ? fmi3_declarations() : fmi2_declarations(), fmu_core_types(), table(variables), fmu_core(),
          three ? fmi3_functions() : fmi2_functions());
   return text;

@@ -1,6 +1,5 @@
 #include "codegen/graph/body/assigned.hpp"
 
-#include <map>
 #include <utility>
 
 namespace hysteron::bodies {
@@ -20,9 +19,11 @@ class Walk {
         names.insert(upper(assign->target.name.text));
         expression(assign->value);
       } else if (const auto* call = std::get_if<syntax::Invoke>(&one.node)) {
-        names.insert(upper(call->instance.name.text));
-        const bool again = loops_ > 0 || calls.contains(upper(call->instance.name.text));
-        calls[upper(call->instance.name.text)] = again;
+        const std::string name = upper(call->instance.name.text);
+        names.insert(name);
+        if (!called_.insert(name).second || loops_ > 0) {
+          called_again.insert(name);
+        }
         arguments(call->arguments);
       } else if (const auto* choice = std::get_if<syntax::If>(&one.node)) {
         for (const syntax::Branch& branch : choice->branches) {
@@ -50,7 +51,7 @@ class Walk {
   }
 
   std::set<std::string> names{};
-  std::map<std::string, bool> calls{};  ///< of what is called, whether at a second place or in a loop
+  std::set<std::string> called_again{};
 
  private:
   void round(const syntax::Statements& list) {
@@ -84,6 +85,7 @@ class Walk {
   }
 
   const syntax::Library& library_;
+  std::set<std::string> called_{};
   int loops_ = 0;
 };
 
@@ -92,13 +94,7 @@ class Walk {
 Written written_by(const Source& source) {
   Walk walk(*source.library);
   walk.statements(source.unit->statements);
-  Written result{.names = std::move(walk.names)};
-  for (const auto& [name, again] : walk.calls) {
-    if (again) {
-      result.called_again.insert(name);
-    }
-  }
-  return result;
+  return {.names = std::move(walk.names), .called_again = std::move(walk.called_again)};
 }
 
 }  // namespace hysteron::bodies

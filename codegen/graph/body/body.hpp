@@ -92,6 +92,7 @@ class Body {
   bool constant(language::ExpressionId id, double& value);
   /// A delay of one step, and the number of its node, whose first input is not wired yet.
   std::pair<Value, std::uint32_t> delay(Plain type, double initial, const std::string& name, language::Span span);
+  void feed(std::uint32_t delay, const Value& next);
   /// What a leaf held at the end of the step before.
   Value cell(std::uint32_t leaf);
   Value read(std::uint32_t leaf) { return state_.values[leaf] ? *state_.values[leaf] : cell(leaf); }
@@ -127,6 +128,8 @@ class Body {
   bool round(const Counting& count, double at);
   void loop(const language::body::Loop& node, language::Span span);
   void again(const language::body::Loop& node, language::Span span, int turn);
+  void unrolled(const std::function<void()>& all_rounds);
+  Value left();
   void narrow(language::ExpressionId condition, bool holds);
   [[nodiscard]] bool is_plain(language::ExpressionId id) const;
 

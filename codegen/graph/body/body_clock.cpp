@@ -55,7 +55,6 @@ Value Body::clock(language::Span span) {
   const auto constant = [&](Plain type, std::int64_t value) {
     return computer_.literal(type, static_cast<double>(value));
   };
-  auto& graph = around_.builder.graph();
   const auto outer = computer_.span();
   computer_.at(path_for("CLOCK"), place_of(span));
   const auto [now, node] = delay(Plain::Udint, 0.0, "CLOCK", place_of(span));
@@ -65,10 +64,10 @@ Value Body::clock(language::Span span) {
     const Value sum = computer_.binary(Operator::Add, left, constant(Plain::Dint, rest));
     const Value full = computer_.binary(Operator::GreaterEqual, sum, constant(Plain::Dint, nanoseconds));
     const Value taken = computer_.binary(Operator::Subtract, sum, constant(Plain::Dint, nanoseconds));
-    graph.wires[graph.nodes[rest_node].first_wire] = computer_.select(full, taken, sum).wire;
+    feed(rest_node, computer_.select(full, taken, sum));
     next = computer_.select(full, computer_.binary(Operator::Add, next, constant(Plain::Udint, 1)), next);
   }
-  graph.wires[graph.nodes[node].first_wire] = next.wire;
+  feed(node, next);
   Value time = computer_.convert(now, Plain::Lreal);
   time.type = Plain::Time;
   clock_ = time;
@@ -79,11 +78,9 @@ Value Body::clock(language::Span span) {
 /// The steps of the task since its first, which come anew from 0 after 2^32.
 Value Body::steps() {
   if (!steps_) {
-    auto& graph = around_.builder.graph();
     computer_.at(path_for("STEPS"), computer_.span());
     const auto [now, node] = delay(Plain::Udint, 0.0, "STEPS", computer_.span());
-    const Value next = computer_.binary(Operator::Add, now, computer_.literal(Plain::Udint, 1.0));
-    graph.wires[graph.nodes[node].first_wire] = next.wire;
+    feed(node, computer_.binary(Operator::Add, now, computer_.literal(Plain::Udint, 1.0)));
     steps_ = now;
   }
   return *steps_;

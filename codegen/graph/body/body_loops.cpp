@@ -98,24 +98,26 @@ std::optional<Body::Counting> Body::counting(const syntax::For& node, language::
     if (computer_.constant(given, bound->least)) {
       bound->greatest = bound->least;
     } else {
-      const bool unknown = is_unsigned_32(given.type) && given.low < 0;
+      const bool unknown = given.beyond_dint();
       bound->least = unknown ? 0.0 : static_cast<double>(given.low);
       bound->greatest = static_cast<double>(unknown ? highest(given.type) : given.high);
     }
   }
-  const Value step = node.by == language::no_expression ? Value{} : value(node.by);
-  if (node.by != language::no_expression && !step.valid()) {
-    return std::nullopt;
-  }
-  if (step.valid() && !is_integer(step.type)) {
-    refuse(error::type_mismatch, expression(node.by).span, "the step of this FOR is no whole number",
-           "Write a whole number behind BY, as in BY 2.");
-    return std::nullopt;
-  }
-  if (step.valid() && !computer_.constant(step, count.by)) {
-    refuse(error::refused_in_body, expression(node.by).span, "the step of this FOR is not known before it runs",
-           "Write a constant behind BY.");
-    return std::nullopt;
+  if (node.by != language::no_expression) {
+    const Value step = value(node.by);
+    if (!step.valid()) {
+      return std::nullopt;
+    }
+    if (!is_integer(step.type)) {
+      refuse(error::type_mismatch, expression(node.by).span, "the step of this FOR is no whole number",
+             "Write a whole number behind BY, as in BY 2.");
+      return std::nullopt;
+    }
+    if (!computer_.constant(step, count.by)) {
+      refuse(error::refused_in_body, expression(node.by).span, "the step of this FOR is not known before it runs",
+             "Write a constant behind BY.");
+      return std::nullopt;
+    }
   }
   if (!count.from.known() && std::abs(count.by) != 1.0) {
     refuse(error::refused_in_body, expression(node.from).span,
@@ -158,6 +160,20 @@ bool Body::holds(const Counting& count) {
   return true;
 }
 
+/// An EXIT and a CONTINUE within are those of this loop.
+void Body::unrolled(const std::function<void()>& all_rounds) {
+  const Value outer_exit = std::exchange(state_.exited, computer_.truth(false));
+  const Value outer_continue = std::exchange(state_.continued, computer_.truth(false));
+  all_rounds();
+  state_.exited = outer_exit;
+  state_.continued = outer_continue;
+}
+
+/// Whether no further round is reached.
+Value Body::left() {
+  return computer_.binary(Operator::Or, state_.exited, state_.returned);
+}
+
 /// One round, at a value of the counter; false where it assigns the counter, which is told.
 bool Body::round(const Counting& count, double at) {
   const Plain type = leaves_[count.leaf].type;
@@ -173,7 +189,7 @@ bool Body::round(const Counting& count, double at) {
   }
   state_.continued = computer_.truth(false);
   if (!count.known()) {
-    const Value over = computer_.binary(Operator::Or, state_.exited, state_.returned);
+    const Value over = left();
     const Value next = computer_.fit(computer_.literal(Plain::Dint, at + count.by), type);
     write(count.leaf, computer_.select(over, here, next));
   }
@@ -192,7 +208,7 @@ void Body::rounds(const Counting& count, double at) {
         computer_.binary(Operator::And, reached(count.from, up ? Operator::LessEqual : Operator::GreaterEqual),
                          reached(count.to, up ? Operator::GreaterEqual : Operator::LessEqual)),
         [&] { right = round(count, at); }, [] {});
-    const Value over = computer_.binary(Operator::Or, state_.exited, state_.returned);
+    const Value over = left();
     if (!right || computer_.is_true(over) || executed_ > most_statements) {
       return;
     }
@@ -218,19 +234,11 @@ void Body::loop(const syntax::For& node, language::Span span) {
   if (!count->known()) {  // what the counter is where no round is reached
     write(count->leaf, computer_.convert(count->from.value, leaves_[count->leaf].type));
   }
-  const Value outer_exit = std::exchange(state_.exited, computer_.truth(false));
-  const Value outer_continue = std::exchange(state_.continued, computer_.truth(false));
-  rounds(*count, count->first());
-  state_.exited = outer_exit;
-  state_.continued = outer_continue;
+  unrolled([&] { rounds(*count, count->first()); });
 }
 
 void Body::loop(const syntax::Loop& node, language::Span span) {
-  const Value outer_exit = std::exchange(state_.exited, computer_.truth(false));
-  const Value outer_continue = std::exchange(state_.continued, computer_.truth(false));
-  again(node, span, 0);
-  state_.exited = outer_exit;
-  state_.continued = outer_continue;
+  unrolled([&] { again(node, span, 0); });
 }
 
 /// One turn, and within it, under its condition, those that follow: the ranges of their numbers are narrower.
@@ -252,10 +260,9 @@ void Body::again(const syntax::Loop& node, language::Span span, int turn) {
     }
     execute(node.statements);
     state_.continued = computer_.truth(false);
-    const Value over = computer_.binary(Operator::Or, state_.exited, state_.returned);
     if (executed_ <= most_statements) {
       choose(
-          over, [] {}, [&] { again(node, span, turn + 1); });
+          left(), [] {}, [&] { again(node, span, turn + 1); });
     }
   };
   if (turn == 0 && !node.tested_first) {
@@ -316,7 +323,7 @@ void Body::narrow(language::ExpressionId id, bool holds) {
     Value& kept = *state_.values[place->leaf];
     double number = 0.0;
     const bool compared = is_integer(kept.type) && other.valid() && is_integer(other.type) &&
-                          computer_.constant(other, number) && !(is_unsigned_32(kept.type) && kept.low < 0);
+                          computer_.constant(other, number) && !kept.beyond_dint();
     if (!compared) {
       continue;
     }

@@ -62,7 +62,7 @@ void Body::make_pins(Place& place, const std::string& path, language::Span span)
   const auto add = [&](const Field& field) {
     auto part = std::make_unique<Place>();
     part->path = path + "." + upper(field.name);
-    const Plain plain = plain_of_pin(field.type, place.type->timer);
+    const Plain plain = plain_of_pin(field.type, place.type->by_clock != nullptr);
     part->leaf = make_leaf(plain, plain == Plain::Time ? field.preset * 1000.0 : field.preset, part->path, span, true);
     place.parts.push_back(std::move(part));
     place.members.push_back({.name = upper(field.name)});
@@ -239,6 +239,11 @@ std::pair<Value, std::uint32_t> Body::delay(Plain plain, double initial, const s
   return {last, number};
 }
 
+void Body::feed(std::uint32_t delay, const Value& next) {
+  auto& graph = around_.builder.graph();
+  graph.wires[graph.nodes[delay].first_wire] = next.wire;
+}
+
 Value Body::cell(std::uint32_t leaf) {
   Leaf& one = leaves_[leaf];
   if (!one.cell) {
@@ -248,10 +253,9 @@ Value Body::cell(std::uint32_t leaf) {
 }
 
 void Body::close_cells() {
-  auto& graph = around_.builder.graph();
   for (std::uint32_t leaf = 0; leaf < leaves_.size(); ++leaf) {
     if (leaves_[leaf].cell) {
-      graph.wires[graph.nodes[leaves_[leaf].node].first_wire] = read(leaf).wire;
+      feed(leaves_[leaf].node, read(leaf));
     }
   }
   for (const auto& [leaf, span] : open_pins_) {

@@ -95,15 +95,18 @@ void Body::branches(const std::vector<syntax::Branch>& list, std::size_t at, con
     execute(otherwise);
     return;
   }
-  computer_.at(path_for("CONDITION"), place_of(expression(list[at].condition).span));
-  const auto side = [&](bool holds, const std::function<void()>& statements) {
-    return [this, holds, statements, id = list[at].condition] {
-      narrow(id, holds);
-      statements();
-    };
-  };
-  choose(condition(list[at].condition), side(true, [&] { execute(list[at].statements); }),
-         side(false, [&] { branches(list, at + 1, otherwise); }));
+  const language::ExpressionId test = list[at].condition;
+  computer_.at(path_for("CONDITION"), place_of(expression(test).span));
+  choose(
+      condition(test),
+      [&] {
+        narrow(test, true);
+        execute(list[at].statements);
+      },
+      [&] {
+        narrow(test, false);
+        branches(list, at + 1, otherwise);
+      });
 }
 
 Value Body::selected(const syntax::Arm& arm, const Value& selector) {

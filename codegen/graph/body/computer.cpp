@@ -105,7 +105,7 @@ Value Computer::fit(const Value& value, Plain type) {
     return literal(type, static_cast<double>(value.low));
   }
   if (info(type).width == 32) {
-    result.low = is_unsigned_32(type) && value.low < 0 ? lowest_dint : value.low;
+    result.low = result.beyond_dint() ? lowest_dint : value.low;
     result.high = std::min(value.high, highest_dint);
     return result;
   }
@@ -163,7 +163,7 @@ Value Computer::assignable(const Value& value, Plain type, const std::string& ta
 
 Wire Computer::real_of(const Value& value) {
   const Wire real = apply(Op::ToReal, {value.wire});
-  if (!is_unsigned_32(value.type) || value.low >= 0) {
+  if (!value.beyond_dint()) {
     return real;
   }
   const Wire above = apply(Op::Add, {real, builder_.literal(Type::Real, two_to_32)});

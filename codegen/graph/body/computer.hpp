@@ -24,6 +24,8 @@ struct Value {
   std::int64_t low = 0;
   std::int64_t high = 0;  ///< integers: what it may be, between these
   [[nodiscard]] bool valid() const { return wire.from != Wire::From::Nothing; }
+  /// It may be above the greatest DINT, whose bits are those of a number below 0: its range is that of the bits.
+  [[nodiscard]] bool beyond_dint() const { return is_unsigned_32(type) && low < 0; }
 };
 
 class Computer {

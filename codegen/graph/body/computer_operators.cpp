@@ -153,7 +153,7 @@ Value Computer::integer(Op op, const Value& left, const Value& right, Plain type
 }
 
 Value Computer::divided(bool remainder, const Value& left, const Value& right, Plain type) {
-  if (!is_unsigned_32(type) || (left.low >= 0 && right.low >= 0)) {
+  if (!left.beyond_dint() && !right.beyond_dint()) {
     const Value result = integer(remainder ? Op::IntModulo : Op::IntDivide, left, right, type);
     if (left.low < 0 || right.low < 0) {
       return result;
@@ -179,7 +179,7 @@ Value Computer::divided(bool remainder, const Value& left, const Value& right, P
 
 /// What a comparison of two integers gives, where their ranges tell.
 std::optional<bool> Computer::decided(Operator op, const Value& left, const Value& right) {
-  if (is_unsigned_32(left.type) && (left.low < 0 || right.low < 0)) {
+  if (left.beyond_dint() || right.beyond_dint()) {
     return std::nullopt;
   }
   const bool below = left.high < right.low;
@@ -219,7 +219,7 @@ Value Computer::compared(Operator op, const Value& left, const Value& right) {
   if (const auto known = integers ? decided(op, left, right) : std::nullopt) {
     return truth(*known);
   }
-  if (integers && is_unsigned_32(left.type) && !equality && (left.low < 0 || right.low < 0)) {
+  if (!equality && (left.beyond_dint() || right.beyond_dint())) {
     a = apply(Op::IntXor, {a, whole(lowest_whole)});  // in the order of numbers without a sign
     b = apply(Op::IntXor, {b, whole(lowest_whole)});
   }
@@ -328,16 +328,14 @@ Value Computer::select(const Value& condition, const Value& yes, const Value& no
                               yes.wire.type == no.wire.type && builder_.value(yes.wire) == builder_.value(no.wire) &&
                               std::signbit(builder_.value(yes.wire)) == std::signbit(builder_.value(no.wire)));
   Value result = yes;
+  result.low = std::min(yes.low, no.low);
+  result.high = std::max(yes.high, no.high);
   if (same) {
-    result.low = std::min(yes.low, no.low);
-    result.high = std::max(yes.high, no.high);
     return result;
   }
   result.loose = false;
   result.untyped = false;
   result.wide = yes.wide || no.wide;
-  result.low = std::min(yes.low, no.low);
-  result.high = std::max(yes.high, no.high);
   const Op op =
       yes.wire.type == Type::Bool ? Op::SelectBool : (yes.wire.type == Type::Int ? Op::SelectInt : Op::Select);
   result.wire = apply(op, {condition.wire, yes.wire, no.wire});
@@ -346,8 +344,7 @@ Value Computer::select(const Value& condition, const Value& yes, const Value& no
 
 Value Computer::extreme(const Value& first, const Value& second, bool greater) {
   Value result = select(compared(greater ? Operator::Greater : Operator::Less, second, first), second, first);
-  const bool hidden = is_unsigned_32(first.type) && (first.low < 0 || second.low < 0);
-  if (is_integer(first.type) && !hidden) {
+  if (is_integer(first.type) && !first.beyond_dint() && !second.beyond_dint()) {
     const auto bound = [&](std::int64_t a, std::int64_t b) { return greater ? std::max(a, b) : std::min(a, b); };
     result.low = bound(first.low, second.low);
     result.high = bound(first.high, second.high);

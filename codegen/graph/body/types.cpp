@@ -93,21 +93,15 @@ TypeRef Types::named(const language::Name& name) {
     }
     result = inner;
   } else if (const Source source = find_unit(name.text, false); source.unit != nullptr) {
-    made.kind = BodyType::Kind::Block;
-    made.source = source;
-    made.members = members(source.unit->declarations);
-    result = std::make_shared<BodyType>(std::move(made));
+    result = block(source);
   } else {
     std::string_view wanted = name.text;
     for (const auto& [iec, own] : timers) {
       wanted = same_name(iec, name.text) ? own : wanted;
     }
     made.block = find_block_type(wanted);
-    made.timer = wanted != name.text;
-    if (made.timer) {
-      BodyType text{.kind = BodyType::Kind::Block, .source = unit_of(timers_by_clock(), name.text, false)};
-      text.members = members(text.source.unit->declarations);
-      made.by_clock = std::make_shared<BodyType>(std::move(text));
+    if (wanted != name.text) {
+      made.by_clock = block(unit_of(timers_by_clock(), name.text, false));
     }
     made.kind = BodyType::Kind::Library;
     if (same_name(name.text, fmu_type_name)) {
@@ -124,6 +118,11 @@ TypeRef Types::named(const language::Name& name) {
   }
   known_.emplace(key, result);
   return result;
+}
+
+TypeRef Types::block(const Source& source) {
+  return std::make_shared<BodyType>(
+      BodyType{.kind = BodyType::Kind::Block, .members = members(source.unit->declarations), .source = source});
 }
 
 TypeRef Types::array(const syntax::TypeSpec& spec) {

@@ -74,8 +74,7 @@ struct BodyType {
   std::vector<Member> members{};                     ///< of a structure or a block of one's own
   Source source{};                                   ///< of a block of one's own
   const hysteron::BlockType* block = nullptr;        ///< of the library
-  bool timer = false;                                ///< named as in the standard: its numbers are TIMEs
-  TypeRef by_clock{};                                ///< of such a timer: the block of its text
+  TypeRef by_clock{};                                ///< of a timer of the standard, of TIMEs: the block of its text
   double start = 0.0;                                ///< of an enumeration: its first value
   const language::body::Initial* initial = nullptr;  ///< of a TYPE with a value of its own
 };
@@ -100,6 +99,7 @@ class Types {
 
  private:
   TypeRef named(const language::Name& name);
+  TypeRef block(const Source& source);
   TypeRef array(const language::body::TypeSpec& spec);
   TypeRef enumeration(const language::body::TypeSpec& spec, std::string_view name);
   void read_enumerations();

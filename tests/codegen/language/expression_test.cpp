@@ -264,7 +264,7 @@ TEST(Expression, RealLiteralsAreReadToTheNearestDouble) {
 TEST(Expression, SpansCoverWhatWasWritten) {
   const auto file = parse_expression("A + (B * C)");
   const auto& sum = file.expressions.at(root(file));
-  const auto text = [&](language::Span span) { return file.text->substr(span.offset, span.length); };
+  const auto text = [&](language::Span span) { return file.text_of(span); };
   EXPECT_EQ(text(sum.span), "A + (B * C)");
   const auto& binary = std::get<language::Binary>(sum.node);
   EXPECT_EQ(text(file.expressions.at(binary.left).span), "A");

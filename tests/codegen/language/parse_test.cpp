@@ -92,7 +92,7 @@ TEST(Parse, ViewsOutliveACopyOfTheFile) {
 
 TEST(Parse, SpansOfBlocksAndStatements) {
   const auto file = parse_right("(* x *) FUNCTION_BLOCK F\n A (X := 1.0) ;\n B := 2.0;\nEND_FUNCTION_BLOCK (* y *)");
-  const auto text = [&](language::Span span) { return file.text->substr(span.offset, span.length); };
+  const auto text = [&](language::Span span) { return file.text_of(span); };
   const auto& block = file.blocks.at(0);
   EXPECT_TRUE(text(block.span).starts_with("FUNCTION_BLOCK F"));
   EXPECT_TRUE(text(block.span).ends_with("END_FUNCTION_BLOCK"));

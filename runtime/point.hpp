@@ -43,6 +43,32 @@ constexpr bool is_real(PointType type) {
   return type == PointType::real32 || type == PointType::real64;
 }
 
+/// The lowest and the highest number of a type, as far as a double has every whole number up to it.
+constexpr std::pair<double, double> type_limits(PointType type) {
+  constexpr double exact = 0x1p53;
+  switch (type) {
+    case PointType::boolean:
+      return {0.0, 1.0};
+    case PointType::int16:
+      return {-0x1p15, 0x1p15 - 1.0};
+    case PointType::uint16:
+      return {0.0, 0x1p16 - 1.0};
+    case PointType::int32:
+      return {-0x1p31, 0x1p31 - 1.0};
+    case PointType::uint32:
+      return {0.0, 0x1p32 - 1.0};
+    case PointType::int64:
+      return {-exact, exact};
+    case PointType::uint64:
+      return {0.0, exact};
+    case PointType::real32:
+      return {-std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
+    case PointType::real64:
+      return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  }
+  return {0.0, 0.0};
+}
+
 /// What a client must be allowed before it may write a point.
 enum class WriteRight {
   inputs,      ///< inputs of the diagram, and to say that the client lives
@@ -125,7 +151,7 @@ class PointDoor {
   /// are.
   virtual void read(Snapshot& into) = 0;
   /// All of the writes or none. Empty where taken; otherwise the reason, as a sentence that names the point.
-  /// The caller has checked that each is writable, finite and within its limits.
+  /// The caller has checked that each is writable, finite, of its type and within its limits.
   virtual std::string write(std::span<const PointWrite> writes) = 0;
   /// Whether one of those who use write() owns the writes: who uses the door otherwise changes nothing meanwhile, and
   /// nothing is forced.

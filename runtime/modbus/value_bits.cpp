@@ -89,31 +89,7 @@ std::uint64_t bits_of(double value, RegisterType type) {
 }
 
 std::pair<double, double> limits_of(RegisterType type) {
-  constexpr double exact = 0x1p53;
-  if (type.is_bcd) {
-    return {0.0, static_cast<double>(most_of_bcd(type))};
-  }
-  switch (type.type) {
-    case PointType::boolean:
-      return {0.0, 1.0};
-    case PointType::int16:
-      return {-0x1p15, 0x1p15 - 1.0};
-    case PointType::uint16:
-      return {0.0, 0x1p16 - 1.0};
-    case PointType::int32:
-      return {-0x1p31, 0x1p31 - 1.0};
-    case PointType::uint32:
-      return {0.0, 0x1p32 - 1.0};
-    case PointType::int64:
-      return {-exact, exact};
-    case PointType::uint64:
-      return {0.0, exact};
-    case PointType::real32:
-      return {-std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
-    case PointType::real64:
-      return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  }
-  return {0.0, 0.0};
+  return type.is_bcd ? std::pair(0.0, static_cast<double>(most_of_bcd(type))) : type_limits(type.type);
 }
 
 bool holds(RegisterType type, double value) {

@@ -8,15 +8,27 @@
 
 namespace hysteron::runtime {
 
-std::string refusal_of(const ProgramSignal& signal, double value) {
+std::string refusal_by_type(const std::string& name, PointType type, double value) {
   if (!std::isfinite(value)) {
-    return signal.name + " is not a finite number.";
+    return name + " is not a finite number.";
   }
-  if (signal.type == PointType::boolean && value != 0.0 && value != 1.0) {
-    return signal.name + " takes 0 or 1.";
+  if (type == PointType::boolean && value != 0.0 && value != 1.0) {
+    return name + " takes 0 or 1.";
   }
-  if (!is_real(signal.type) && value != std::trunc(value)) {
-    return signal.name + " takes a whole number.";
+  if (!is_real(type) && value != std::trunc(value)) {
+    return name + " takes a whole number.";
+  }
+  const auto [low, high] = type_limits(type);
+  if (value < low || value > high) {
+    return name + " takes " + (is_real(type) ? "numbers" : "whole numbers") + " from " + number_text(low) + " to " +
+           number_text(high) + "; " + number_text(value) + " was given.";
+  }
+  return {};
+}
+
+std::string refusal_of(const ProgramSignal& signal, double value) {
+  if (auto refusal = refusal_by_type(signal.name, signal.type, value); !refusal.empty()) {
+    return refusal;
   }
   const bool too_low = signal.low_excluded ? !(value > signal.low) : !(value >= signal.low);
   if (too_low) {

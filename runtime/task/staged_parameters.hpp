@@ -45,6 +45,8 @@ class StagedParameters {
   std::vector<double> staged_;
 };
 
+/// Why a type does not hold a value, as a sentence that begins with the name; empty where it does.
+[[nodiscard]] std::string refusal_by_type(const std::string& name, PointType type, double value);
 /// Why a signal cannot take a value, as a sentence that names it; empty where it can.
 [[nodiscard]] std::string refusal_of(const ProgramSignal& signal, double value);
 /// Why a program cannot take new values in the place of those that it has; empty where it can. What does not change is

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <exception>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "runtime/history/history_trend.hpp"
+#include "runtime/task/staged_parameters.hpp"
 #include "runtime/web/assets.hpp"
 #include "runtime/web/parameter_text.hpp"
 #include "support/diagnostic.hpp"
@@ -33,8 +33,8 @@ std::string with_unit(double value, const std::string& unit) {
 
 /// Why a point cannot take a value, as a sentence that names it; empty where it can.
 std::string refusal_of(const Point& point, double value) {
-  if (!std::isfinite(value)) {
-    return point.name + " is not a finite number.";
+  if (auto refusal = refusal_by_type(point.name, point.type, value); !refusal.empty()) {
+    return refusal;
   }
   if (value < point.low) {
     return fmt::format("{} must be at least {}; {} was given.", point.name, with_unit(point.low, point.unit),

@@ -171,6 +171,29 @@ TEST(WebResponder, ASetIsStagedThenCommittedWhole) {
   EXPECT_TRUE(bench.staged().empty());
 }
 
+TEST(WebResponder, WhatIsStagedIsHeldAgainstItsType) {
+  test::Accumulator program;
+  for (ProgramSignal& parameter : program.mutable_shape().parameters) {
+    parameter.low = -std::numeric_limits<double>::infinity();
+    parameter.high = std::numeric_limits<double>::infinity();
+  }
+  program.mutable_shape().parameters[0].type = PointType::int32;
+  program.mutable_shape().parameters[1].type = PointType::uint16;
+  TaskDoor door(program, {{}}, {{}, {}});
+  Responder responder(door, {.name = "ACCUMULATOR", .period = 1'000'000}, {.token = test::token});
+  const auto answered = [&](const char* body) {
+    const Answer answer = responder.answer(
+        {.method = "POST", .target = "/api/stage", .host = "localhost", .authorization = bearer, .body = body});
+    return std::to_string(answer.status) + " " + json::parse(answer.body).value("refusal", "");
+  };
+  EXPECT_EQ(answered(R"({"G.A": 2147483648})"),
+            "422 G.A takes whole numbers from -2147483648 to 2147483647; 2147483648 was given.");
+  EXPECT_EQ(answered(R"({"G.A": 1.5})"), "422 G.A takes a whole number.");
+  EXPECT_EQ(answered(R"({"G.B": -1})"), "422 G.B takes whole numbers from 0 to 65535; -1 was given.");
+  EXPECT_EQ(answered(R"({"G.B": 65536})"), "422 G.B takes whole numbers from 0 to 65535; 65536 was given.");
+  EXPECT_EQ(answered(R"({"G.A": -2147483648, "G.B": 65535})"), "200 ");
+}
+
 TEST(WebResponder, ARefusalSaysWhyAndChangesNothing) {
   PageBench bench({.token = test::token});
   EXPECT_EQ(bench.refusal("/api/stage", R"({"G.B": 1, "G.A": 2e9})"),

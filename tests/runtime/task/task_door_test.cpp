@@ -20,6 +20,7 @@ using test::Accumulator;
 using test::point;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::StartsWith;
 
 enum class By : std::uint8_t { plant, page };
 
@@ -126,6 +127,17 @@ TEST(TaskDoor, AForceIsHeldAgainstTheTypeAndTheRangeOfTheInput) {
   EXPECT_EQ(refusal(std::numeric_limits<double>::quiet_NaN()), "X is not a finite number.");
   EXPECT_EQ(refusal(0.5, PointType::int32), "X takes a whole number.");
   EXPECT_EQ(refusal(2.0, PointType::boolean), "X takes 0 or 1.");
+  x.low = -std::numeric_limits<double>::infinity();
+  x.high = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(refusal(2147483647.0, PointType::int32), "");
+  EXPECT_EQ(refusal(-2147483648.0, PointType::int32), "");
+  EXPECT_EQ(refusal(2147483648.0, PointType::int32),
+            "X takes whole numbers from -2147483648 to 2147483647; 2147483648 was given.");
+  EXPECT_THAT(refusal(-1e300, PointType::int32), StartsWith("X takes whole numbers from -2147483648 to 2147483647"));
+  EXPECT_EQ(refusal(65535.0, PointType::uint16), "");
+  EXPECT_EQ(refusal(65536.0, PointType::uint16), "X takes whole numbers from 0 to 65535; 65536 was given.");
+  EXPECT_EQ(refusal(-1.0, PointType::uint16), "X takes whole numbers from 0 to 65535; -1 was given.");
+  EXPECT_EQ(refusal(1e300), "");
   EXPECT_EQ(bench.door.force(std::vector<Force>{{.point = 1, .value = 1.0}}), "Inputs alone can be forced.");
 }
 

@@ -220,6 +220,35 @@ TEST(Bodies, AForGoesFromAndToWhatItIsGiven) {
   EXPECT_EQ(faults_of(loop("FOR I := A TO B BY 2")), Faults{"129:5"});
 }
 
+TEST(Bodies, ABoundOfAForIsAWholeNumber) {
+  const auto loop = [](const std::string& head) {
+    return "FUNCTION_BLOCK F VAR_OUTPUT S : DINT; END_VAR VAR I : INT; END_VAR\nS := 0;\n" + head +
+           " DO S := S + I; END_FOR; END_FUNCTION_BLOCK";
+  };
+  const Faults mismatch{fmt::format("{}:3", error::type_mismatch)};
+  for (const char* const head : {"FOR I := 1 TO 3.7", "FOR I := 1 TO 3.0", "FOR I := 1 TO T#3s", "FOR I := 0 TO TRUE",
+                                 "FOR I := 1.5 TO 3", "FOR I := 1 TO 3 BY 0.5", "FOR I := 1 TO 3 BY 1.0"}) {
+    EXPECT_EQ(faults_of(loop(head)), mismatch) << head;
+  }
+  EXPECT_EQ(faults_of(loop("FOR I := 1 TO 3 BY 2")), Faults{});
+}
+
+TEST(Bodies, TheCounterOfAForHoldsItsBounds) {
+  const auto loop = [](const std::string& type, const std::string& head) {
+    return "FUNCTION_BLOCK F VAR_INPUT N : DINT; END_VAR VAR_OUTPUT S : DINT; END_VAR VAR I : " + type +
+           "; END_VAR\nS := 0;\nFOR I := " + head + " DO S := S + I; END_FOR; END_FUNCTION_BLOCK";
+  };
+  const Faults mismatch{fmt::format("{}:3", error::type_mismatch)};
+  EXPECT_EQ(faults_of(loop("INT", "32766 TO LIMIT(32766, N, 40000)")), mismatch);
+  EXPECT_EQ(faults_of(loop("INT", "1 TO 40000 BY 20000")), mismatch);
+  EXPECT_EQ(faults_of(loop("INT", "-32767 TO -40000 BY -1")), mismatch);
+  EXPECT_EQ(faults_of(loop("BYTE", "LIMIT(-1, N, 3) TO 5")), mismatch);
+  EXPECT_EQ(faults_of(loop("SINT", "120 TO 128")), mismatch);
+  EXPECT_EQ(faults_of(loop("DINT", "32766 TO LIMIT(32766, N, 40000)")), Faults{});
+  EXPECT_EQ(faults_of(loop("SINT", "120 TO 127")), Faults{});
+  EXPECT_EQ(faults_of(loop("BYTE", "0 TO LIMIT(0, N, 9) - 1")), Faults{});
+}
+
 TEST(Bodies, AWhileThatItsNumbersEndIsUnrolled) {
   const auto body = [](const std::string& statements) {
     return "FUNCTION_BLOCK F VAR_INPUT X : INT; R : LREAL; END_VAR VAR_OUTPUT N : INT; END_VAR VAR_TEMP Y : INT; Z : "

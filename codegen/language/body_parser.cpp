@@ -147,7 +147,7 @@ void BodyParser::finish(body::Unit& unit, std::string_view end) {
     unexpected(end);
     advance();
     Statements rest;
-    statements(rest);
+    rounds(rest);  // the end that has no beginning may be that of a loop around it
   }
   if (!accept(end)) {
     reporter_.error(error::missing_end, unit.name.span, fmt::format("{} has no {}.", unit.name.text, end),
@@ -174,6 +174,13 @@ void BodyParser::statements(Statements& list) {
     statement(list);
   }
   --depth_;
+}
+
+/// What a loop repeats: EXIT and CONTINUE have a meaning there.
+void BodyParser::rounds(Statements& list) {
+  ++loops_;
+  statements(list);
+  --loops_;
 }
 
 /// `3:` or `A, B:` or `1..4:` begins an arm of a CASE; the only statement with a colon right behind its first words.
@@ -203,6 +210,10 @@ void BodyParser::statement(Statements& list) {
   } else if (accept("REPEAT")) {
     right = repeat_statement(one.node.emplace<body::Loop>());
   } else if (is("RETURN") || is("EXIT") || is("CONTINUE")) {
+    if (loops_ == 0 && !is("RETURN")) {
+      refuse(span_of(now()), fmt::format("{} stands outside of any loop.", upper(word(now()))),
+             "Write RETURN, which ends the body, or put it between FOR, WHILE or REPEAT and the end of that loop.");
+    }
     one.node = is("RETURN") ? body::Jump::Return : (is("EXIT") ? body::Jump::Exit : body::Jump::Continue);
     advance();
     right = end_of_statement();
@@ -256,7 +267,7 @@ bool BodyParser::while_statement(body::Loop& node) {
     skip_to("END_WHILE");
     return true;
   }
-  statements(node.statements);
+  rounds(node.statements);
   const bool ended = expect("END_WHILE");
   accept(Symbol::Semicolon);  // which some leave out here
   return ended;
@@ -264,7 +275,7 @@ bool BodyParser::while_statement(body::Loop& node) {
 
 bool BodyParser::repeat_statement(body::Loop& node) {
   node.tested_first = false;
-  statements(node.statements);
+  rounds(node.statements);
   if (!expect("UNTIL") || (node.condition = expression()) == no_expression) {
     skip_to("END_REPEAT");
     return true;
@@ -351,7 +362,7 @@ bool BodyParser::for_statement(body::For& node) {
     skip_to("END_FOR");
     return true;
   }
-  statements(node.statements);
+  rounds(node.statements);
   const bool ended = expect("END_FOR");
   accept(Symbol::Semicolon);  // which some leave out here
   return ended;

@@ -43,6 +43,7 @@ class BodyParser {
 
   // Statements: body_parser.cpp.
   void statements(body::Statements& list);
+  void rounds(body::Statements& list);
   void statement(body::Statements& list);
   bool if_statement(body::If& node);
   bool case_statement(body::Case& node);
@@ -94,6 +95,7 @@ class BodyParser {
   std::array<Token, 3> window_{};
   std::uint32_t last_end_ = 0;
   int depth_ = 0;
+  int loops_ = 0;  ///< around the statement that is read
 };
 
 }  // namespace hysteron::language

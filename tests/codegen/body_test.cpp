@@ -220,6 +220,55 @@ TEST(Bodies, AForGoesFromAndToWhatItIsGiven) {
   EXPECT_EQ(faults_of(loop("FOR I := A TO B BY 2")), Faults{"129:5"});
 }
 
+TEST(Bodies, ABoundOfAForIsAWholeNumber) {
+  const auto loop = [](const std::string& head) {
+    return "FUNCTION_BLOCK F VAR_OUTPUT S : DINT; END_VAR VAR I : INT; END_VAR\nS := 0;\n" + head +
+           " DO S := S + I; END_FOR; END_FUNCTION_BLOCK";
+  };
+  const Faults mismatch{fmt::format("{}:3", error::type_mismatch)};
+  for (const char* const head : {"FOR I := 1 TO 3.7", "FOR I := 1 TO 3.0", "FOR I := 1 TO T#3s", "FOR I := 0 TO TRUE",
+                                 "FOR I := 1.5 TO 3", "FOR I := 1 TO 3 BY 0.5", "FOR I := 1 TO 3 BY 1.0"}) {
+    EXPECT_EQ(faults_of(loop(head)), mismatch) << head;
+  }
+  EXPECT_EQ(faults_of(loop("FOR I := 1 TO 3 BY 2")), Faults{});
+}
+
+TEST(Bodies, TheCounterOfAForHoldsItsBounds) {
+  const auto loop = [](const std::string& type, const std::string& head) {
+    return "FUNCTION_BLOCK F VAR_INPUT N : DINT; END_VAR VAR_OUTPUT S : DINT; END_VAR VAR I : " + type +
+           "; END_VAR\nS := 0;\nFOR I := " + head + " DO S := S + I; END_FOR; END_FUNCTION_BLOCK";
+  };
+  const Faults mismatch{fmt::format("{}:3", error::type_mismatch)};
+  EXPECT_EQ(faults_of(loop("INT", "32766 TO LIMIT(32766, N, 40000)")), mismatch);
+  EXPECT_EQ(faults_of(loop("INT", "1 TO 40000 BY 20000")), mismatch);
+  EXPECT_EQ(faults_of(loop("INT", "-32767 TO -40000 BY -1")), mismatch);
+  EXPECT_EQ(faults_of(loop("BYTE", "LIMIT(-1, N, 3) TO 5")), mismatch);
+  EXPECT_EQ(faults_of(loop("SINT", "120 TO 128")), mismatch);
+  EXPECT_EQ(faults_of(loop("DINT", "32766 TO LIMIT(32766, N, 40000)")), Faults{});
+  EXPECT_EQ(faults_of(loop("SINT", "120 TO 127")), Faults{});
+  EXPECT_EQ(faults_of(loop("BYTE", "0 TO LIMIT(0, N, 9) - 1")), Faults{});
+}
+
+TEST(Bodies, RemaindersQuotientsAndShiftsHaveRanges) {
+  const auto loop = [](const std::string& head) {
+    return "FUNCTION_BLOCK F VAR_INPUT N : DINT; W : DWORD; K : INT; END_VAR VAR_OUTPUT S : DINT; END_VAR VAR I : "
+           "DINT; "
+           "END_VAR\nS := 0;\nFOR I := " +
+           head + " DO S := S + I; END_FOR; END_FUNCTION_BLOCK";
+  };
+  EXPECT_EQ(run_body(loop("1 TO N MOD 7"), {{6, 0, 0}, {-1, 0, 0}, {10, 0, 0}}), (std::vector<double>{21, 0, 6}));
+  EXPECT_EQ(run_body(loop("N MOD 4 TO 3"), {{-3, 0, 0}, {6, 0, 0}}), (std::vector<double>{0, 5}));
+  EXPECT_EQ(run_body(loop("-3 TO N MOD -4"), {{-3, 0, 0}, {6, 0, 0}}), (std::vector<double>{-3, -3}));
+  EXPECT_EQ(run_body(loop("1 TO ABS(N) MOD 7"), {{-6, 0, 0}, {5, 0, 0}}), (std::vector<double>{21, 15}));
+  EXPECT_EQ(run_body(loop("0 TO ABS(LIMIT(-4, N, 2))"), {{-9, 0, 0}, {9, 0, 0}}), (std::vector<double>{10, 3}));
+  EXPECT_EQ(run_body(loop("1 TO LIMIT(-20, N, 20) / 4"), {{-9, 0, 0}, {9, 0, 0}}), (std::vector<double>{0, 3}));
+  EXPECT_EQ(run_body(loop("1 TO DWORD_TO_DINT(SHR(W, 28))"), {{0, -1, 0}, {0, 536870912, 0}}),
+            (std::vector<double>{120, 3}));
+  EXPECT_EQ(run_body(loop("1 TO SHL(LIMIT(0, N, 3), 2)"), {{2, 0, 0}, {9, 0, 0}}), (std::vector<double>{36, 78}));
+  EXPECT_EQ(faults_of(loop("1 TO SHL(N, 2)")), Faults{"129:3"});
+  EXPECT_EQ(faults_of(loop("1 TO N / 2")), Faults{"129:3"});
+}
+
 TEST(Bodies, AWhileThatItsNumbersEndIsUnrolled) {
   const auto body = [](const std::string& statements) {
     return "FUNCTION_BLOCK F VAR_INPUT X : INT; R : LREAL; END_VAR VAR_OUTPUT N : INT; END_VAR VAR_TEMP Y : INT; Z : "
@@ -247,6 +296,34 @@ TEST(Bodies, AChoiceOfLiteralsTakesTheTypeItIsAssignedTo) {
   EXPECT_EQ(run_body(body("REAL", "SEL(B, 0.5, 0.1)"), {{0, 0}, {1, 0}}), (std::vector<double>{0.5, 0.1F}));
   EXPECT_EQ(faults_of(body("BYTE", "SEL(B, 0, 256)")), Faults{fmt::format("{}:2", error::type_mismatch)});
   EXPECT_EQ(faults_of(body("SINT", "SEL(B, 0, X)")), Faults{fmt::format("{}:2", error::type_mismatch)});
+}
+
+TEST(Bodies, WhatIsWrongIsSaidOfWhatWasWritten) {
+  const auto first = [](const std::string& statement) {
+    Diagnostics found;
+    check(std::make_shared<const language::SourceFile>(
+              language::parse("t",
+                              "FUNCTION_BLOCK F (* @ts 1ms @body *) VAR_INPUT N : DINT; B : BOOL; END_VAR VAR_OUTPUT T "
+                              ": TIME; Y : BYTE; END_VAR\n" +
+                                  statement + " END_FUNCTION_BLOCK",
+                              found)),
+          found);
+    for (const Diagnostic& one : found.all()) {
+      if (one.place.line == 2) {
+        return fmt::format("{}+{} {} {}", one.place.column, one.place.length, one.cause, one.mend);
+      }
+    }
+    return std::string();
+  };
+  EXPECT_NE(
+      first("T := TIME;").find("'TIME' is a type, no value Name a variable; the time since the first step is TIME()"),
+      std::string::npos);
+  EXPECT_NE(first("T := TIME(1);").find("TIME() takes no argument"), std::string::npos);
+  EXPECT_EQ(first("WHILE N DO N := 0; END_WHILE;").substr(0, 4), "7+1 ");
+  EXPECT_EQ(first("REPEAT N := 0; UNTIL N END_REPEAT;").substr(0, 5), "22+1 ");
+  EXPECT_NE(
+      first("Y := SEL(B, 0, 256);").find("does not hold 256, which this choice may give Write numbers from 0 to 255."),
+      std::string::npos);
 }
 
 TEST(Bodies, TheTimeOfTheTaskIsReadInWholeMilliseconds) {

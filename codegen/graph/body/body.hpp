@@ -122,6 +122,7 @@ class Body {
   struct Counting;
   void loop(const language::body::For& node, language::Span span);
   std::optional<Counting> counting(const language::body::For& node, language::Span span);
+  bool holds(const Counting& count);
   void rounds(const Counting& count, double at);
   bool round(const Counting& count, double at);
   void loop(const language::body::Loop& node, language::Span span);

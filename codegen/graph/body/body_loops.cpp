@@ -90,12 +90,13 @@ std::optional<Body::Counting> Body::counting(const syntax::For& node, language::
     if (!given.valid()) {
       return std::nullopt;
     }
-    if (computer_.constant(given, bound->least)) {
-      bound->greatest = bound->least;
-    } else if (!is_integer(given.type)) {
+    if (!is_integer(given.type)) {
       refuse(error::type_mismatch, expression(id).span, "a bound of this FOR is no whole number",
              "Give it an INT or a DINT.");
       return std::nullopt;
+    }
+    if (computer_.constant(given, bound->least)) {
+      bound->greatest = bound->least;
     } else {
       const bool unknown = is_unsigned_32(given.type) && given.low < 0;
       bound->least = unknown ? 0.0 : static_cast<double>(given.low);
@@ -103,6 +104,14 @@ std::optional<Body::Counting> Body::counting(const syntax::For& node, language::
     }
   }
   const Value step = node.by == language::no_expression ? Value{} : value(node.by);
+  if (node.by != language::no_expression && !step.valid()) {
+    return std::nullopt;
+  }
+  if (step.valid() && !is_integer(step.type)) {
+    refuse(error::type_mismatch, expression(node.by).span, "the step of this FOR is no whole number",
+           "Write a whole number behind BY, as in BY 2.");
+    return std::nullopt;
+  }
   if (step.valid() && !computer_.constant(step, count.by)) {
     refuse(error::refused_in_body, expression(node.by).span, "the step of this FOR is not known before it runs",
            "Write a constant behind BY.");
@@ -120,11 +129,34 @@ std::optional<Body::Counting> Body::counting(const syntax::For& node, language::
            count.by == 0.0 ? std::string("this FOR never ends")
                            : fmt::format("this FOR {} {} rounds, more than {}", count.known() ? "has" : "may have",
                                          most, most_rounds),
-           count.known() ? "A loop is unrolled: give it fewer rounds."
-                         : "Bound it by what there can be: FOR I := 1 TO LIMIT(0, N, 32) DO.");
+           count.known()      ? "A loop is unrolled: give it fewer rounds."
+           : count.to.known() ? "Bound where it begins by what there can be: FOR I := LIMIT(1, N, 32) TO 32 DO."
+                              : "Bound it by what there can be: FOR I := 1 TO LIMIT(0, N, 32) DO.");
     return std::nullopt;
   }
-  return count;
+  return most < 1.0 || holds(count) ? std::optional(count) : std::nullopt;
+}
+
+/// Whether the counter's type holds where it begins and how far it goes; false is told. In a PLC it would go on from
+/// the other end of its range, and the loop without an end.
+bool Body::holds(const Counting& count) {
+  const Plain type = leaves_[count.leaf].type;
+  const auto low = static_cast<double>(lowest(type));
+  const auto high = static_cast<double>(highest(type));
+  const auto refuse_bound = [&](language::ExpressionId id, const Counting::Bound& bound, double beyond) {
+    refuse(error::type_mismatch, expression(id).span,
+           fmt::format("'{}' is {}, and does not hold {:.0f}, which this bound of the FOR {}",
+                       count.node->variable.text, info(type).name, beyond, bound.known() ? "is" : "may be"),
+           fmt::format("Count by a DINT, or keep the bound within {:.0f} … {:.0f}.", low, high));
+    return false;
+  };
+  if (count.from.least < low || count.from.greatest > high) {
+    return refuse_bound(count.node->from, count.from, count.from.least < low ? count.from.least : count.from.greatest);
+  }
+  if (count.by > 0.0 ? count.last() > high : count.last() < low) {
+    return refuse_bound(count.node->to, count.to, count.last());
+  }
+  return true;
 }
 
 /// One round, at a value of the counter; false where it assigns the counter, which is told.

@@ -306,8 +306,12 @@ std::vector<Body::Choice> Body::choices(const syntax::Access& access) {
       return language::same_name(one.name.text, access.name.text);
     });
     if (!told || scope_ == nullptr) {
-      refuse(error::unknown_name, access.name.span, fmt::format("'{}' is not declared", access.name.text),
-             "Declare it in a VAR section; variables outside of the block come in as VAR_INPUT.");
+      Plain type{};
+      const bool is_type = plain_of(access.name.text, type);
+      const auto cause = fmt::format("'{}' is {}", access.name.text, is_type ? "a type, no value" : "not declared");
+      refuse(error::unknown_name, access.name.span, cause,
+             is_type ? "Name a variable; the time since the first step is TIME(), with its parentheses."
+                     : "Declare it in a VAR section; variables outside of the block come in as VAR_INPUT.");
     }
     return {};
   }

@@ -147,6 +147,12 @@ Value Computer::assignable(const Value& value, Plain type, const std::string& ta
                              ? value.low >= std::min(lowest(type), -highest(type) - 1) && value.low <= highest(type)
                          : value.untyped ? value.low >= lowest(type) && value.high <= highest(type)
                                          : lowest(value.type) >= lowest(type) && highest(value.type) <= highest(type);
+    if (!reaches && value.untyped && !value.loose) {
+      return refused(error::type_mismatch,
+                     fmt::format("{} is {}, and does not hold {}, which this choice may give", target, to.name,
+                                 value.high > highest(type) ? value.high : value.low),
+                     fmt::format("Write numbers from {} to {}.", lowest(type), highest(type)));
+    }
     return reaches ? fit(value, type) : mismatch(value.loose ? "Write a number within its range." : conversion);
   }
   if (is_number(value.type) && is_number(type) && (value.loose || value.untyped || type == Plain::Lreal)) {

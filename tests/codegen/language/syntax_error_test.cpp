@@ -119,8 +119,13 @@ TEST(SyntaxError, WhatADiagramDoesNotHave) {
   EXPECT_THAT(in_statements("IF A THEN IF B THEN C := ); END_IF; END_IF; D := );"),
               ElementsAre("102 1:43+1", "102 1:67+1"));
   EXPECT_THAT(in_statements("FOR I := 1 TO 3 DO A := B; END_FOR\nEXIT; REPEAT A := B;"),
-              ElementsAre("129 2:7+6"));  // a body, whose REPEAT is refused
+              ElementsAre("129 2:1+4", "102 3:1+18"));  // a body
   EXPECT_THAT(in_statements("A := B; END_IF;\nEXIT;"), ElementsAre("111 1:26+6", "111 2:1+4"));
+  EXPECT_THAT(in_statements("IF A THEN EXIT; END_IF;\nCONTINUE;\nRETURN;"), ElementsAre("129 1:28+4", "129 2:1+8"));
+  EXPECT_THAT(in_statements("FOR I := 1 TO 3 DO IF A THEN EXIT; ELSE CONTINUE; END_IF; END_FOR EXIT;"),
+              ElementsAre("129 1:84+4"));
+  EXPECT_THAT(in_statements("WHILE A DO CONTINUE; END_WHILE REPEAT EXIT; UNTIL A END_REPEAT EXIT;"),
+              ElementsAre("129 1:81+4"));
   EXPECT_THAT(in_statements("A(B);"), ElementsAre("118 1:20+1"));
   EXPECT_THAT(in_statements("A(1.0);"), ElementsAre("118 1:20+3"));
   EXPECT_THAT(in_statements("A(X = 1.0);"), ElementsAre("118 1:22+1"));

@@ -14,6 +14,7 @@
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "support/rounded_text.hpp"
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
 #include "tool/picture_file.hpp"
@@ -78,7 +79,7 @@ std::string first_sentence(const Diagnostic& fault) {
 std::string as_text(const records::Record& record, const std::vector<Row>& rows) {
   const double step = record.sample_time();
   std::string text = fmt::format("{}: {} rows every {} s ({} a second), from {} s to {} s\n", record.file(),
-                                 record.size(), number_text(step), fmt::format("{:.6g}", 1.0 / step),
+                                 record.size(), rounded_text(step), fmt::format("{:.6g}", 1.0 / step),
                                  number_text(record.time().front()), number_text(record.time().back()));
   text += fmt::format("times lie within {:.2g} s of the even grid\n", records::jitter_of(record));
   for (const std::string& note : record.notes()) {

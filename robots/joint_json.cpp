@@ -7,8 +7,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Of a zero without its sign: a limit of 0 times a gain below 0 is -0.
 Json number_or_null(double number) {
-  return std::isfinite(number) ? Json(number) : Json(nullptr);
+  return std::isfinite(number) ? Json(number + 0.0) : Json(nullptr);
 }
 
 Json range_json(const Range& range) {

@@ -109,9 +109,9 @@ Number number_of(const char* text) {
   return value;
 }
 
-std::optional<std::uint32_t> stated_number(const char* text) {
-  std::uint32_t value = 0;
-  const std::string_view view(text);
+std::optional<std::uint64_t> stated_number(const char* text) {
+  std::uint64_t value = 0;
+  const std::string_view view = trimmed(text, " \t\r\n");
   const auto [end, fault] = std::from_chars(view.data(), view.data() + view.size(), value);
   return fault == std::errc() && end == view.data() + view.size() ? std::optional(value) : std::nullopt;
 }
@@ -314,6 +314,9 @@ class ProjectReader {
                          .storage = node.attribute(tc6::storage).value(),
                          .edge = node.attribute(tc6::edge).value(),
                          .line = line_of(node)};
+    if (const auto order = node.attribute(tc6::execution_order); order && !element.order) {
+      element.unread_order = fmt::format("\"{}\"", std::string_view(order.value()).substr(0, 60));
+    }
     const xml_node position = child(node, tc6::position);
     element.x = position.attribute("x").as_double();
     element.y = position.attribute("y").as_double();

@@ -29,7 +29,8 @@ struct DrawnPin {
 struct DrawnElement {
   std::string kind{};  ///< the name of its XML element: block, inVariable, contact, …
   std::uint64_t id = 0;
-  std::optional<std::uint32_t> order{};  ///< of execution, where it is stated
+  std::optional<std::uint64_t> order{};  ///< of execution, where it is stated
+  std::string unread_order{};            ///< what stands for it and is no whole number, in quotation marks
   double x = 0.0;
   double y = 0.0;
   std::string text{};      ///< expression, type of a block, variable of a contact or coil, name of a connector

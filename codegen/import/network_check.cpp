@@ -32,7 +32,7 @@ bool is_constant(const DrawnPou& pou, const DrawnElement& element) {
 std::vector<Objection> undecided_assignments(const DrawnPou& pou, const Targets& called) {
   std::vector<Objection> result;
   for (const auto& [name, elements] : assigners_in(pou, called)) {
-    std::set<std::uint32_t> orders;
+    std::set<std::uint64_t> orders;
     for (const DrawnElement* const element : elements) {
       const bool stated = element->order && orders.insert(*element->order).second;
       if (!stated && elements.size() > 1) {
@@ -63,6 +63,10 @@ std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, 
     };
     if (!known.contains(element.kind)) {
       object("no diagram has such an element", "Draw it with blocks and variables, or write it as text.");
+    }
+    if (!element.unread_order.empty()) {
+      object(fmt::format("its executionOrderId {} is no whole number from 0", element.unread_order),
+             "Write a number that no other element has, or take the attribute out.");
     }
     for (const DrawnPin& pin : element.both) {
       const auto callee = own.find(in_capitals(element.text));

@@ -78,7 +78,7 @@ class Reader {
   };
   struct Assigned {
     std::string name{};  ///< that holds the value now
-    std::optional<std::uint32_t> order{};
+    std::optional<std::uint64_t> order{};
   };
 
   void refuse(const DrawnElement& element, std::string_view why, std::string mend) {
@@ -323,7 +323,7 @@ class Reader {
       return input_value(pou_.elements[from->second], pou_.elements[from->second].inputs.front());
     }
     if (element.kind == tc6::block) {
-      if (!reader.order || reader.kind != tc6::block) {
+      if (!reader.order || reader.kind != tc6::block || element.order == reader.order) {
         run_element(index);  // what feeds a variable, or a block without an order of its own, runs before it
       }
       return element.instance.empty() ? function_value(index) : output_value(element, link.pin);

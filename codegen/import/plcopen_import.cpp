@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <map>
 #include <set>
+#include <vector>
 
 #include "codegen/compile.hpp"
 #include "codegen/graph/names.hpp"
@@ -155,6 +158,7 @@ class Importer {
       refused_.add_all(error.diagnostics());
       return "";
     }
+    tell_of_equal_orders(pou);
     return fmt::format("FUNCTION_BLOCK {}{}\n{}\n{}END_FUNCTION_BLOCK\n", pou.name, comment(remark),
                        declarations(pou, &network), network.statements);
   }
@@ -235,6 +239,26 @@ class Importer {
                                       one.name, pou.name, one.external ? "a variable of the project" : "a VAR_IN_OUT",
                                       one.name, import::name_of_output(one)),
                           "Wire both where the block is called.");
+      }
+    }
+  }
+
+  /// An order is one element's alone; of equal ones the wires say more than the number.
+  void tell_of_equal_orders(const DrawnPou& pou) {
+    std::map<std::uint64_t, std::vector<const import::DrawnElement*>> by_order;
+    for (const import::DrawnElement& one : pou.elements) {
+      if (import::is_executed(one) && one.order) {
+        by_order[*one.order].push_back(&one);
+      }
+    }
+    for (const auto& [order, elements] : by_order) {
+      if (elements.size() > 1) {
+        warnings_.warning(
+            error::untranslatable_element, {.file = file_, .line = elements[1]->line, .column = 1},
+            fmt::format("localId {} of {} has executionOrderId {}, as localId {} has: of equal ones, what "
+                        "feeds another runs before it",
+                        elements[1]->id, pou.name, order, elements[0]->id),
+            "Give each a number of its own where another order is meant.");
       }
     }
   }

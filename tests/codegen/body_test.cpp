@@ -16,6 +16,7 @@
 #include "support/errors.hpp"
 #include "tests/codegen/backends/recorded_run.hpp"
 #include "tests/codegen/random_body.hpp"
+#include "tests/codegen/refusal.hpp"
 #include "tests/codegen/sequential_body.hpp"
 
 namespace hysteron::testing {
@@ -50,6 +51,19 @@ std::vector<double> run_body(const std::string& text, const std::vector<std::vec
     }
   }
   return results;
+}
+
+TEST(Bodies, APlainNumberAsATimeIsAskedForItsUnit) {
+  for (const auto& [number, mend] : {std::pair{"2", "Write it with its unit: T#2s, or T#2ms."},
+                                     {"0.5", "Write it with its unit: T#0.5s, or T#0.5ms."},
+                                     {"DINT#2", "Convert it: DINT_TO_TIME( … )."}}) {
+    const auto told = testing::refusals(
+        fmt::format("FUNCTION_BLOCK B (* @ts 10ms @body *)\n  VAR_OUTPUT Y : LREAL; END_VAR\n  VAR D : TIME; END_VAR\n"
+                    "  D := {};\n  Y := 1.0;\nEND_FUNCTION_BLOCK\n",
+                    number));
+    ASSERT_FALSE(told.empty()) << number;
+    EXPECT_EQ(told.front().mend, mend) << number;
+  }
 }
 
 TEST(Bodies, RandomOnesComputeWhatTheirStatementsSay) {

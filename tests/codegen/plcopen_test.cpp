@@ -389,6 +389,49 @@ TEST(Plcopen, WithoutAnOrderAVariableThatIsAssignedTwiceIsRefused) {
   }
 }
 
+/// An upper block that reads a lower one.
+std::string upper_reads_lower(const std::string& order_of_upper, const std::string& order_of_lower) {
+  return project(
+      R"(<inputVars><variable name="X"><type><LREAL/></type></variable></inputVars>
+         <outputVars><variable name="Y"><type><LREAL/></type></variable></outputVars>
+         <localVars><variable name="G"><type><derived name="HY_GAIN"/></type></variable></localVars>)",
+      R"(<inVariable localId="1"><connectionPointOut/><expression>X</expression></inVariable>
+         <block localId="2" typeName="HY_GAIN" instanceName="G" executionOrderId=")" +
+          order_of_upper + R"("><position x="9" y="0"/><inputVariables>
+           <variable formalParameter="XIN"><connectionPointIn><connection refLocalId="3"/></connectionPointIn></variable>
+         </inputVariables><outputVariables><variable formalParameter="XOUT"/></outputVariables></block>
+         <block localId="3" typeName="ADD" executionOrderId=")" +
+          order_of_lower + R"("><position x="0" y="9"/><inputVariables>
+           <variable formalParameter="IN1"><connectionPointIn><connection refLocalId="1"/></connectionPointIn></variable>
+           <variable formalParameter="IN2"><connectionPointIn><connection refLocalId="1"/></connectionPointIn></variable>
+         </inputVariables></block><outVariable localId="4"><connectionPointIn><connection refLocalId="2" formalParameter="XOUT"/></connectionPointIn><expression>Y</expression></outVariable>)");
+}
+
+TEST(Plcopen, OfEqualOrdersTheWiresDecideWithAWarning) {
+  Diagnostics warnings;
+  const std::string text = import_plcopen("drawing.xml", upper_reads_lower("7", "7"), {}, warnings);
+  EXPECT_EQ(text.find("HY_DELAY"), std::string::npos) << text;
+  ASSERT_EQ(warnings.all().size(), 1U);
+  EXPECT_NE(warnings.all().front().cause.find("localId 3 of P has executionOrderId 7, as localId 2"),
+            std::string::npos);
+  Diagnostics none;
+  EXPECT_NE(import_plcopen("drawing.xml", upper_reads_lower("7", "8"), {}, none).find("HY_DELAY"), std::string::npos);
+  EXPECT_TRUE(none.all().empty());
+}
+
+TEST(Plcopen, AnOrderThatIsNoWholeNumberIsRefused) {
+  EXPECT_NO_THROW(read_back(upper_reads_lower("2", "18446744073709551615")));
+  for (const std::string order : {"abc", "-3", "", "1.5", "99999999999999999999"}) {
+    try {
+      read_back(upper_reads_lower("1", order));
+      FAIL() << order;
+    } catch (const InputError& error) {
+      const std::string& cause = error.diagnostics().all().front().cause;
+      EXPECT_NE(cause.find("executionOrderId \"" + order + "\" is no whole number"), std::string::npos) << cause;
+    }
+  }
+}
+
 TEST(Plcopen, WhatIsHandedOverIsAVariableOfThePou) {
   const auto cause = [](const std::string& xml) {
     try {

@@ -20,6 +20,7 @@
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
+#include "support/rounded_text.hpp"
 #include "support/text_file.hpp"
 
 namespace hysteron::records {
@@ -176,10 +177,10 @@ void refuse_inventing(const Table& table, const Times& times, double sample_time
   const std::optional<MistakenUnit> mistaken = mistaken_unit(usual / sample_time);
   throw InputError(
       error::two_readings, table.place,
-      fmt::format("The record has a row every {} s: brought to {} s, most rows would be made up.", number_text(usual),
-                  number_text(sample_time)),
+      fmt::format("The record has a row every {} s: brought to {} s, most rows would be made up.", rounded_text(usual),
+                  rounded_text(sample_time)),
       !mistaken ? fmt::format("let the diagram run at the rate of the record, or state its time, as --rate {}Hz.",
-                              number_text(1.0 / sample_time))
+                              rounded_text(1.0 / sample_time))
                 : fmt::format("if its times are in {0}, say so: --time {1}[{0}].", mistaken->unit, times.column));
 }
 
@@ -279,7 +280,7 @@ Record record_of(Table table, const ReadOptions& options) {
   if (resample) {
     record.note(fmt::format(
         "resampled ({}) to {} s: {} rows, {} of them in gaps; a row lies up to {:.3g} s from its sample{}",
-        name_of(options.resampling), number_text(grid.sample_time), cost.rows, cost.made_up, cost.farthest,
+        name_of(options.resampling), rounded_text(grid.sample_time), cost.rows, cost.made_up, cost.farthest,
         cost.delay > 0.0 ? fmt::format(", and signals are late by {:.3g} s in the mean", cost.delay) : std::string()));
   }
   return record;

@@ -356,14 +356,15 @@ class JointReader : private AxisGraph {
                          short_text(told_.front()), units.inertia),
              fmt::format("leave --inertia out, or correct the unit {} or the gain behind it.", units.force));
     }
+    const auto times_inertia = [&](double term) { return *inertia * term + 0.0; };  // no term has no sign: 0, not -0
     Joint joint{.turns = turns_,
                 .velocity = graph_.nodes[velocity_].path + ".XOUT",
                 .velocity_to_si = to_si_,
                 .inertia = *inertia,
-                .damping = -*inertia * terms.velocity,
-                .friction = *inertia * to_si_ * terms.friction,
-                .stiffness = -*inertia * terms.position,
-                .offset = *inertia * to_si_ * terms.constant};
+                .damping = times_inertia(-terms.velocity),
+                .friction = times_inertia(to_si_ * terms.friction),
+                .stiffness = times_inertia(-terms.position),
+                .offset = times_inertia(to_si_ * terms.constant)};
     take_actuator(terms, joint);
     take_states(joint);
     for (const Left& one : left_) {

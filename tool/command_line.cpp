@@ -131,6 +131,20 @@ bool out_is_standard(const CLI::App& command) {
   return given(command, "--out") && command.get_option("--out")->results().back() == "-";
 }
 
+/// Nobody wants a file or a folder that is called -.
+void refuse_product_called_dash(const CLI::App& command) {
+  if (command.get_name() == "run") {
+    return;
+  }
+  for (const char* const name : {"--out", "--report", "--bench"}) {
+    if (given(command, name) && command.get_option(name)->results().back() == "-") {
+      throw bad_usage(fmt::format("hysteron {}: {} takes no -, which would be a file or folder of this name.",
+                                  command.get_name(), name),
+                      "give a name; the standard output is /dev/stdout, where a file is wanted.");
+    }
+  }
+}
+
 class CommandLine {
  public:
   CommandLine() {
@@ -187,6 +201,7 @@ class CommandLine {
     if (chosen.empty()) {
       throw bad_usage("No command is given.", "`hysteron help` lists the commands.");
     }
+    refuse_product_called_dash(*chosen.front());
     const auto& [action, results] = actions_.at(chosen.front());
     const bool is_product = given(*chosen.front(), "--json") || out_is_standard(*chosen.front());
     console.speak({.quiet = quiet_, .results = is_product ? Results::Product : results});

@@ -117,7 +117,8 @@ std::string numbers_text(const std::vector<double>& values) {
 
 Contents contents_of(const Graph& graph, Expressions& expressions, std::map<std::string, Expressions::Number>& wires) {
   Contents found;
-  found.ports["sample time"] = graph.sample_time_ns > 0 ? number_text(graph.sample_time()) + " s" : "not stated";
+  found.ports["sample time"] =
+      graph.sample_time_ns > 0 ? number_text(static_cast<double>(graph.sample_time_ns) / 1e9) + " s" : "not stated";
   std::map<std::uint32_t, Expressions::Number> known;
   for (const Port& input : graph.inputs) {
     found.ports[in_capitals(input.name)] = port_text(input, "input");

@@ -20,8 +20,8 @@
 #include "runtime/history/history_reader.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
-#include "support/numbers.hpp"
 #include "support/overwriting.hpp"
+#include "support/rounded_text.hpp"
 #include "tool/commands.hpp"
 #include "tool/history_time.hpp"
 #include "tool/option_values.hpp"
@@ -94,7 +94,7 @@ std::string listed(const std::vector<RecordedRun>& runs, const StretchList& foun
     if (own.empty()) {
       continue;
     }
-    text += fmt::format("run {}: {}, a row every {} s; ", run.run, run.title, number_text(run.sample_time()));
+    text += fmt::format("run {}: {}, a row every {} s; ", run.run, run.title, rounded_text(run.sample_time()));
     for (const RecordedPoint& point : run.points) {
       text += (&point == run.points.data() ? "" : ", ") + point_text(point);
     }
@@ -219,7 +219,7 @@ int export_record(HistoryReader& reader, const std::vector<RecordedRun>& runs, c
   }
   std::string text =
       fmt::format("{}: run {}, {} rows every {} s, {}\n", options.output, run.run, record.size(),
-                  number_text(run.sample_time()), span_text(taken.front().first_ms, taken.back().last_ms));
+                  rounded_text(run.sample_time()), span_text(taken.front().first_ms, taken.back().last_ms));
   text += options.gaps && taken.size() == 1 ? "there is no gap\n"
           : options.gaps ? fmt::format("{} stretches with gaps between them: read it with --resample\n", taken.size())
                          : left_out(found.stretches, longest);

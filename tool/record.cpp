@@ -8,11 +8,13 @@
 #include <vector>
 
 #include "diagnosis/noise/noise_floor.hpp"
+#include "diagnosis/noise/spectrum.hpp"
 #include "records/read.hpp"
 #include "records/statistics.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "support/rounded_text.hpp"
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
 #include "tool/picture_file.hpp"
@@ -29,7 +31,8 @@ constexpr std::string_view record_examples = R"(Examples:
 
 Says what was understood of a record, as run, tune and diagnose read it with the same options: its time, its columns
 with units and ranges, how finely each resolves, how much it repeats and rests, and how much noise it has.
-resolution: the smallest step between two values. noise: that of fast differences; slow noise is not in it.
+resolution: the smallest step between two values, before resampling. noise: that of fast differences, and after
+resampling no less than what a sensor of this resolution rounds off; slow noise is not in it.
 Exit codes: 0 read; 2 the file cannot be read as a record, or none of its columns holds numbers.
 )";
 
@@ -47,12 +50,24 @@ struct Row {
   double noise = 0.0;
 };
 
+/// Resampling hides the step of a sensor: what lies between two readings is made up, and no finer than they are.
+Row row_of(const records::Column& column) {
+  Row row{.column = &column,
+          .statistics = records::statistics_of(column.values),
+          .noise = diagnosis::noise_by_differences(column.values)};
+  if (column.step > 0.0) {
+    row.statistics.resolution = column.step;
+    const double rounding = diagnosis::rounded_off(column.step);
+    const bool is_small = rounding < diagnosis::most_rounding * (row.statistics.high - row.statistics.low);
+    row.noise = is_small ? std::max(row.noise, rounding) : row.noise;  // of a switch the step is no noise
+  }
+  return row;
+}
+
 std::vector<Row> rows_of(const records::Record& record) {
   std::vector<Row> rows;
   for (const records::Column& column : record.columns()) {
-    rows.push_back({.column = &column,
-                    .statistics = records::statistics_of(column.values),
-                    .noise = diagnosis::noise_by_differences(column.values)});
+    rows.push_back(row_of(column));
   }
   return rows;
 }
@@ -64,7 +79,7 @@ std::string first_sentence(const Diagnostic& fault) {
 std::string as_text(const records::Record& record, const std::vector<Row>& rows) {
   const double step = record.sample_time();
   std::string text = fmt::format("{}: {} rows every {} s ({} a second), from {} s to {} s\n", record.file(),
-                                 record.size(), number_text(step), fmt::format("{:.6g}", 1.0 / step),
+                                 record.size(), rounded_text(step), fmt::format("{:.6g}", 1.0 / step),
                                  number_text(record.time().front()), number_text(record.time().back()));
   text += fmt::format("times lie within {:.2g} s of the even grid\n", records::jitter_of(record));
   for (const std::string& note : record.notes()) {

@@ -12,6 +12,7 @@
 #include "support/numbers.hpp"
 #include "support/progress.hpp"
 #include "support/root_mean_square.hpp"
+#include "support/rounded_text.hpp"
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
@@ -81,7 +82,7 @@ std::string summary(const RecordedRun& run, const records::Record& record) {
   const auto& [program, drive, names, units, outputs] = run;
   const Graph& graph = program.graph;
   std::string text = fmt::format("{}: {} steps of {} s\ninputs\n", graph.name, drive.steps,
-                                 number_text(graph.sample_time_ns > 0 ? graph.sample_time() : drive.sample_time));
+                                 rounded_text(graph.sample_time_ns > 0 ? graph.sample_time() : drive.sample_time));
   for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
     const Port& input = graph.inputs[i];
     const bool recorded = record.find(input.name) != nullptr;
@@ -189,7 +190,8 @@ Action add_run(CLI::App& app) {
       ->required()
       ->option_text("OUT.csv");
   app.add_option("--trace", options->traces,
-                 "Writes a signal inside too: a variable, INSTANCE.PIN, or PLANT.INSTANCE.PIN; a vector is each of its elements; may be repeated.")
+                 "Writes a signal inside too: a variable, INSTANCE.PIN, or PLANT.INSTANCE.PIN; a vector is each of its "
+                 "elements; may be repeated.")
       ->option_text("PATH")
       ->delimiter(',')
       ->allow_extra_args(false);

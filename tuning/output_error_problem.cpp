@@ -12,6 +12,7 @@
 #include "codegen/parameters/elements.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "support/rounded_text.hpp"
 #include "tuning/free_parameters.hpp"
 #include "tuning/output_error.hpp"
 #include "tuning/signal_names.hpp"
@@ -122,7 +123,7 @@ class Builder {
     if (graph().sample_time_ns == 0 && std::fabs(record.sample_time() - first) > 1e-6 * first) {
       diagnostics_.error(error::sample_time_mismatch, {.file = record.file()},
                          fmt::format("The record has a sample time of {} s, the first one {} s.",
-                                     number_text(record.sample_time()), number_text(first)),
+                                     rounded_text(record.sample_time()), rounded_text(first)),
                          "resample one of them.");
     }
   }

@@ -11,6 +11,7 @@
 #include "records/time/time_unit.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "support/rounded_text.hpp"
 #include "tuning/interpreted_run.hpp"
 
 namespace hysteron {
@@ -151,11 +152,11 @@ void settle_sample_time(const records::Record& record, Program& program, Diagnos
   }
   diagnostics.error(
       error::sample_time_mismatch, record.place("t", 1),
-      fmt::format("The record has a sample time of {} s, {} one of {} s.", number_text(recorded), graph.name,
-                  number_text(stated)),
+      fmt::format("The record has a sample time of {} s, {} one of {} s.", rounded_text(recorded), graph.name,
+                  rounded_text(stated)),
       fmt::format("{}state @ts {} in the diagram, or bring the record to {} s: --resample linear, or hold "
                   "for encoders and commands.",
-                  unit_advice(recorded / stated, record.time_name()), duration_text(recorded), number_text(stated)),
+                  unit_advice(recorded / stated, record.time_name()), duration_text(recorded), rounded_text(stated)),
       {{.place = graph.place(graph.sample_time_span), .text = "the sample time of the diagram"}});
 }
 

@@ -90,7 +90,7 @@ void ModbusReader::read_server(TomlReader table, bool over_tls) {
   }
   modbus.port = over_tls ? 802 : modbus.port;
   table.read_whole("port", modbus.port);
-  table.read("allow", modbus.allow);
+  table.read("allow", modbus.allow, R"(["192.168.10.0/24"])");
   table.read_whole("connections", modbus.connections);
   modbus.connections_per_address = std::max<std::size_t>(1, modbus.connections / 4);
   table.read_whole("connections_per_address", modbus.connections_per_address);
@@ -104,7 +104,7 @@ void ModbusReader::read_server(TomlReader table, bool over_tls) {
   table.read_choice("map", placing);
   modbus.placing = static_cast<modbus::Placing>(placing);
   table.read("lock_file", modbus.lock_file);
-  table.read("expose", modbus.expose);
+  table.read("expose", modbus.expose, R"(["NAME", "LOOP.*"])");
   modbus.expose_place = table.place("expose");
   if (table.has("expose") && modbus.expose.empty()) {
     found_->error(error::wrong_run_value, table.place("expose"), "expose names no point, and a server has to have one.",

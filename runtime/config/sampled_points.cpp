@@ -57,7 +57,7 @@ std::vector<std::string> read_points(TomlReader& table, const ProgramShape& shap
   }
   std::vector<std::string> wanted;
   std::vector<std::string> points;
-  table.read("points", wanted);
+  table.read("points", wanted, R"(["NAME", "task.fault"])");
   for (const std::string& name : wanted) {
     // The name of a vector is each of its elements.
     std::vector<std::string> known;

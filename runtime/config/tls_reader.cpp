@@ -49,7 +49,7 @@ void TlsReader::read_files(TomlReader table, modbus::TlsOptions& tls) {
   read("key", tls.key, tls.key_place);
   read("clients", tls.clients, tls.clients_place);
   std::vector<std::string> words;
-  table.read("without_role", words);
+  table.read("without_role", words, R"(["read"])");
   tls.without_role = rights_in(words, table.place("without_role"));
 }
 

@@ -83,14 +83,14 @@ void TomlReader::read(std::string_view key, std::string& into) {
   }
 }
 
-void TomlReader::read(std::string_view key, std::vector<std::string>& into) {
+void TomlReader::read(std::string_view key, std::vector<std::string>& into, const char* example) {
   const auto* const node = table_->get(key);
   if (node == nullptr) {
     return;
   }
   const auto* const list = node->as_array();
   if (list == nullptr || (!list->empty() && !list->is_homogeneous<std::string>())) {
-    return wrong_type(key, "a list of texts", "[\"192.168.10.0/24\"]");
+    return wrong_type(key, "a list of texts", example);
   }
   for (const toml::node& one : *list) {
     into.push_back(one.as_string()->get());

@@ -26,7 +26,8 @@ class TomlReader {
 
   void read(std::string_view key, bool& into);
   void read(std::string_view key, std::string& into);
-  void read(std::string_view key, std::vector<std::string>& into);
+  /// `example`: a list as the file would have it, for the mend.
+  void read(std::string_view key, std::vector<std::string>& into, const char* example);
   void read(std::string_view key, double& into);
   void read_duration(std::string_view key, std::int64_t& into);
   void read_duration(std::string_view key, std::chrono::nanoseconds& into);

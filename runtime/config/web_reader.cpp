@@ -19,7 +19,7 @@ WebConfig read_web(TomlReader table, Diagnostics& found) {
     return web;
   }
   std::vector<std::string> words;
-  table.read("rights", words);
+  table.read("rights", words, R"(["parameters", "reset"])");
   web.rights = {.parameters = false, .reset = false, .force = false};
   for (const std::string& word : words) {
     const auto* const right = std::ranges::find(page_rights, word, &PageRight::name);

@@ -438,7 +438,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   if (publishes) {
     mqtt->finish();
   }
-  notices.look_beside();
+  notices.last_look();
   print(status_line(task, shape.name + ": " + std::string(name_of(end)), notices.at_the_end()));
   return (end == LoopEnd::stopped || end == LoopEnd::done) && task.fault() == Fault::stop && notices.all_is_written();
 }

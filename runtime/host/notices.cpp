@@ -178,11 +178,7 @@ std::string ForceNotices::line(const std::vector<std::string>& forced, Clock::ti
 
 void RunNotices::look() {
   writes_.look();
-  if (may_force_) {
-    if (const std::string line = forces_.line(task_->door().forced(), ForceNotices::Clock::now()); !line.empty()) {
-      tell("Forced", line);
-    }
-  }
+  look_at_forces(ForceNotices::Clock::now());
   if (field_ != nullptr) {
     for (const std::string& line : absences_.lines(field_->absent_devices(), AbsenceNotices::Clock::now())) {
       tell("Device", line);
@@ -196,6 +192,20 @@ void RunNotices::look() {
   }
   if (const std::string line = faults_.line(report, FaultNotices::Clock::now()); !line.empty()) {
     tell("Fault", line);
+  }
+}
+
+void RunNotices::last_look() {
+  look_at_forces(ForceNotices::Clock::now() + ForceNotices::pace);
+  look_beside();
+}
+
+void RunNotices::look_at_forces(ForceNotices::Clock::time_point now) {
+  if (!may_force_) {
+    return;
+  }
+  if (const std::string line = forces_.line(task_->door().forced(), now); !line.empty()) {
+    tell("Forced", line);
   }
 }
 

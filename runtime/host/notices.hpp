@@ -77,8 +77,10 @@ class ForceNotices {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// What is to be said; `forced`: as TaskDoor::forced gives them. Empty where nothing changed, or the second is not
-  /// over.
+  static constexpr std::chrono::seconds pace{1};
+
+  /// What is to be said; `forced`: as TaskDoor::forced gives them. Empty where nothing changed, or the last line is not
+  /// as old as `pace`.
   [[nodiscard]] std::string line(const std::vector<std::string>& forced, Clock::time_point now);
 
  private:
@@ -101,13 +103,16 @@ class RunNotices {
 
   /// To be called as time goes by, from a thread that is not the task's.
   void look();
-  /// The part of look() that is about what runs beside the task; once more after its end.
-  void look_beside();
+  /// Once, when all that writes is finished: what happened last, with what was not told yet because a line a second is
+  /// told at the most.
+  void last_look();
   /// For the status line at the end, each part beginning with a semicolon. Once all that writes is finished.
   [[nodiscard]] std::string at_the_end() const;
   [[nodiscard]] bool all_is_written() const { return not_written().empty(); }
 
  private:
+  void look_at_forces(ForceNotices::Clock::time_point now);
+  void look_beside();
   [[nodiscard]] std::string not_written() const;
 
   Task* task_;

@@ -129,8 +129,10 @@ RunningMqtt::RunningMqtt(const RunConfig& config, const ProgramShape& shape, Tas
   settings_.keep = mqtt.keep;
   settings_.file = mqtt.file;
   if (mqtt.payload == MqttPayload::Json) {
+    settings_.owner = fmt::format("{} on topic {}", shape.name, mqtt.topic);
     dialect_ = std::make_unique<JsonDialect>(mqtt.topic, mqtt.qos, settings_.rows.points);
   } else {
+    settings_.owner = fmt::format("{} as node {} of group {}", shape.name, mqtt.node, mqtt.group);
     dialect_ = std::make_unique<SparkplugNode>(mqtt.group, mqtt.node, settings_.rows.points);
   }
   tap_.emplace(points_named(columns, door_->points()), mqtt.step, waiting_rows(shape.period, mqtt.step, columns.size()),

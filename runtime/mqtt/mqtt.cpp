@@ -57,7 +57,7 @@ void MqttSender::open_file() {
     names.push_back(point.name);
   }
   try {
-    auto file = std::make_unique<OutboxFile>(settings_.file, names);
+    auto file = std::make_unique<OutboxFile>(settings_.file, names, settings_.owner);
     if (!file->aside().empty()) {
       remarks_.say(fmt::format("{} was damaged: what it held is in {}, and is not sent.", settings_.file.string(),
                                file->aside()));
@@ -85,6 +85,8 @@ void MqttSender::open_file() {
     file_ = std::move(file);
     keep_at_ = now + keep_pace;
     lose(lost);
+  } catch (const OutboxOfAnother& problem) {
+    file_failed(problem.what(), "Each task needs a file of its own: write another one under [mqtt]");
   } catch (const database::DatabaseError& problem) {
     file_failed(problem.what());
   }
@@ -105,12 +107,11 @@ void MqttSender::keep(std::int64_t before) {
   }
 }
 
-void MqttSender::file_failed(const std::string& problem) {
+void MqttSender::file_failed(const std::string& problem, const char* mend) {
   keep_at_ = time_.steady() + file_retry;
   if (!std::exchange(is_file_told_, true)) {
-    remarks_.say(fmt::format(
-        "rows that wait are in memory alone: {}. Clear what is in the way there; it is tried again every 10 s.",
-        problem));
+    remarks_.say(
+        fmt::format("rows that wait are in memory alone: {}. {}; it is tried again every 10 s.", problem, mend));
   }
 }
 
@@ -332,12 +333,15 @@ void MqttSender::finish(milliseconds longest) {
     outbox_.call_back();
     keep(time_.steady());
   }
-  const bool is_kept = file_ != nullptr && !is_file_told_;
-  if (is_kept && outbox_.size() > 0) {
-    remarks_.say(fmt::format("{} rows wait in {} for the next start.", outbox_.size(), settings_.file.string()));
+  // Where the disk was full at the end, the file holds the older ones.
+  const std::uint64_t behind = file_ == nullptr ? 0 : file_->end();
+  const std::uint64_t kept =
+      std::min<std::uint64_t>(outbox_.size(), behind > outbox_.first() ? behind - outbox_.first() : 0);
+  if (kept > 0) {
+    remarks_.say(fmt::format("{} rows wait in {} for the next start.", kept, settings_.file.string()));
   }
-  counter_->add_lost(is_kept ? 0 : outbox_.size());
-  counter_->set_waiting(is_kept ? outbox_.size() : 0);
+  counter_->add_lost(outbox_.size() - kept);
+  counter_->set_waiting(kept);
   const std::uint64_t lost = counter_->read().lost;
   if (lost == 0) {
     remarks_.is_well("no row is lost at the end.");

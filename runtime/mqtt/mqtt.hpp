@@ -36,6 +36,7 @@ struct MqttSettings {
   std::uint64_t bytes = 0;       ///< of memory for rows that wait
   std::int64_t keep = 0;         ///< ns
   std::filesystem::path file{};  ///< of the rows that wait; empty: they are in memory alone
+  std::string owner{};           ///< of that file: the task, and where its rows go
 };
 
 /// What the thread does, a turn after the other; it may be called from one thread at a time.
@@ -56,7 +57,7 @@ class MqttSender {
   void open_file();
   /// `before`: rows that were added until then.
   void keep(std::int64_t before);
-  void file_failed(const std::string& problem);
+  void file_failed(const std::string& problem, const char* mend = "Clear what is in the way there");
   void set_fault(MqttFault fault);
   void lose(std::uint64_t rows);
   void serve(std::chrono::milliseconds wait, int wake);

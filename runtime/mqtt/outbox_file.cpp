@@ -1,12 +1,16 @@
 #include "runtime/mqtt/outbox_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
+#include <fstream>
 #include <iterator>
 #include <string_view>
 #include <utility>
+
+#include "support/descriptor.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -17,8 +21,9 @@ using database::Statement;
 using database::Transaction;
 using database::Trouble;
 
-constexpr int tables_version = 1;
+constexpr int tables_version = 2;
 constexpr const char* tables = R"(
+CREATE TABLE owner (name TEXT NOT NULL);
 CREATE TABLE points (place INTEGER PRIMARY KEY, name TEXT NOT NULL);
 CREATE TABLE waiting (number INTEGER PRIMARY KEY, utc_ms INTEGER NOT NULL, cycle INTEGER NOT NULL, "values" TEXT NOT NULL);
 )";
@@ -73,6 +78,28 @@ void require_own(const std::filesystem::path& path) {
   }
 }
 
+/// The process that has a file locked, with its command: "process 4711 (hysteron serve b.st)". Not to be asked where
+/// this process itself has it: what it has locked is free then.
+std::string holder_of(const std::filesystem::path& path) {
+  constexpr std::size_t longest_command = 200;
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  if (!file.is_open() || ::fcntl(file.number(), F_GETLK, &lock) != 0 || lock.l_type == F_UNLCK || lock.l_pid <= 0) {
+    return "another process";
+  }
+  std::ifstream told(fmt::format("/proc/{}/cmdline", lock.l_pid));
+  std::string command{std::istreambuf_iterator<char>(told), {}};
+  while (command.ends_with('\0')) {
+    command.pop_back();
+  }
+  std::ranges::replace_if(
+      command, [](char sign) { return static_cast<unsigned char>(sign) < ' '; }, ' ');
+  return fmt::format("process {}{}", lock.l_pid,
+                     command.empty() ? "" : " (" + command.substr(0, longest_command) + ")");
+}
+
 /// Opened alone, with the tables of these rows.
 Database opened(const std::filesystem::path& path) {
   require_own(path);
@@ -90,13 +117,17 @@ Database opened(const std::filesystem::path& path) {
 
 }  // namespace
 
-OutboxFile::OutboxFile(const std::filesystem::path& file, const std::vector<std::string>& points) {
+OutboxFile::OutboxFile(const std::filesystem::path& file, const std::vector<std::string>& points,
+                       const std::string& owner) {
   std::error_code unknown;  // the next call says what is wrong
   std::filesystem::create_directories(file.parent_path(), unknown);
   try {
     open(file);
-    read(points);
+    read(file, points, owner);
   } catch (const DatabaseError& problem) {
+    if (problem.trouble() == Trouble::Held) {
+      throw OutboxOfAnother(fmt::format("{}: {} has it open", file.string(), holder_of(file)), Trouble::Held);
+    }
     if (problem.trouble() != Trouble::Damaged) {
       throw;
     }
@@ -107,7 +138,7 @@ OutboxFile::OutboxFile(const std::filesystem::path& file, const std::vector<std:
     first_ = end_ = 0;
     aside_ = database::put_aside(file);
     open(file);
-    read(points);
+    read(file, points, owner);
   }
 }
 
@@ -117,7 +148,20 @@ void OutboxFile::open(const std::filesystem::path& file) {
   delete_.emplace(database_->prepared("DELETE FROM waiting WHERE number < ?"));
 }
 
-void OutboxFile::read(const std::vector<std::string>& points) {
+void OutboxFile::read(const std::filesystem::path& file, const std::vector<std::string>& points,
+                      const std::string& owner) {
+  std::optional<std::string> owned_by;
+  if (Statement owned = database_->prepared("SELECT name FROM owner"); owned.step()) {
+    owned_by = owned.text(0);
+  }
+  if (owned_by && *owned_by != owner) {
+    Statement counted = database_->prepared("SELECT count(*) FROM waiting");
+    if (counted.step() && counted.integer(0) > 0) {
+      throw OutboxOfAnother(
+          fmt::format("{}: holds {} rows of {}, and is left alone", file.string(), counted.integer(0), *owned_by),
+          Trouble::Other);
+    }
+  }
   std::vector<std::string> names;
   Statement named = database_->prepared("SELECT name FROM points ORDER BY place");
   while (named.step()) {
@@ -144,15 +188,16 @@ void OutboxFile::read(const std::vector<std::string>& points) {
     }
     end_ = static_cast<std::uint64_t>(asked.integer(0)) + 1;
   }
-  const bool is_as_written = names == points && end_ - first_ == rows_.size();
+  const bool is_as_written = owned_by == owner && names == points && end_ - first_ == rows_.size();
   if (!is_as_written) {
-    write_anew(points);
+    write_anew(points, owner);
   }
 }
 
-void OutboxFile::write_anew(const std::vector<std::string>& points) {
+void OutboxFile::write_anew(const std::vector<std::string>& points, const std::string& owner) {
   Transaction all(*database_);
-  database_->run("DELETE FROM points; DELETE FROM waiting;");
+  database_->run("DELETE FROM owner; DELETE FROM points; DELETE FROM waiting;");
+  database_->prepared("INSERT INTO owner (name) VALUES (?)").bind(1, owner).run();
   Statement named = database_->prepared("INSERT INTO points (place, name) VALUES (?, ?)");
   for (std::size_t i = 0; i < points.size(); ++i) {
     named.bind(1, static_cast<std::int64_t>(i)).bind(2, points[i]).run();

@@ -15,11 +15,18 @@
 
 namespace hysteron::runtime {
 
+/// The file is another task's: it has the file open, or its rows wait there.
+class OutboxOfAnother : public database::DatabaseError {
+ public:
+  using DatabaseError::DatabaseError;
+};
+
 class OutboxFile {
  public:
-  /// Opens the file, or makes it; a damaged one is renamed. `points`: the names of those that are published. Throws
-  /// database::DatabaseError: Held where another process has it, Damaged where it is another program's.
-  OutboxFile(const std::filesystem::path& file, const std::vector<std::string>& points);
+  /// Opens the file, or makes it; a damaged one is renamed. `points`: the names of those that are published.
+  /// `owner`: the task, and where its rows go; rows of another one are never read. Throws OutboxOfAnother where another
+  /// process has it or rows of another owner wait in it, database::DatabaseError else; the file is left alone then.
+  OutboxFile(const std::filesystem::path& file, const std::vector<std::string>& points, const std::string& owner = "");
 
   /// The name that a damaged file has now; empty where nothing was put aside.
   [[nodiscard]] const std::string& aside() const { return aside_; }
@@ -37,8 +44,8 @@ class OutboxFile {
 
  private:
   void open(const std::filesystem::path& file);
-  void read(const std::vector<std::string>& points);
-  void write_anew(const std::vector<std::string>& points);
+  void read(const std::filesystem::path& file, const std::vector<std::string>& points, const std::string& owner);
+  void write_anew(const std::vector<std::string>& points, const std::string& owner);
   void insert(std::uint64_t number, const MqttRow& row);
 
   std::string aside_;

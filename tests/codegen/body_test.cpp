@@ -16,6 +16,7 @@
 #include "support/errors.hpp"
 #include "tests/codegen/backends/recorded_run.hpp"
 #include "tests/codegen/random_body.hpp"
+#include "tests/codegen/refusal.hpp"
 #include "tests/codegen/sequential_body.hpp"
 
 namespace hysteron::testing {
@@ -50,6 +51,19 @@ std::vector<double> run_body(const std::string& text, const std::vector<std::vec
     }
   }
   return results;
+}
+
+TEST(Bodies, APlainNumberAsATimeIsAskedForItsUnit) {
+  for (const auto& [number, mend] : {std::pair{"2", "Write it with its unit: T#2s, or T#2ms."},
+                                     {"0.5", "Write it with its unit: T#0.5s, or T#0.5ms."},
+                                     {"DINT#2", "Convert it: DINT_TO_TIME( … )."}}) {
+    const auto told = testing::refusals(
+        fmt::format("FUNCTION_BLOCK B (* @ts 10ms @body *)\n  VAR_OUTPUT Y : LREAL; END_VAR\n  VAR D : TIME; END_VAR\n"
+                    "  D := {};\n  Y := 1.0;\nEND_FUNCTION_BLOCK\n",
+                    number));
+    ASSERT_FALSE(told.empty()) << number;
+    EXPECT_EQ(told.front().mend, mend) << number;
+  }
 }
 
 TEST(Bodies, RandomOnesComputeWhatTheirStatementsSay) {
@@ -249,6 +263,26 @@ TEST(Bodies, TheCounterOfAForHoldsItsBounds) {
   EXPECT_EQ(faults_of(loop("BYTE", "0 TO LIMIT(0, N, 9) - 1")), Faults{});
 }
 
+TEST(Bodies, RemaindersQuotientsAndShiftsHaveRanges) {
+  const auto loop = [](const std::string& head) {
+    return "FUNCTION_BLOCK F VAR_INPUT N : DINT; W : DWORD; K : INT; END_VAR VAR_OUTPUT S : DINT; END_VAR VAR I : "
+           "DINT; "
+           "END_VAR\nS := 0;\nFOR I := " +
+           head + " DO S := S + I; END_FOR; END_FUNCTION_BLOCK";
+  };
+  EXPECT_EQ(run_body(loop("1 TO N MOD 7"), {{6, 0, 0}, {-1, 0, 0}, {10, 0, 0}}), (std::vector<double>{21, 0, 6}));
+  EXPECT_EQ(run_body(loop("N MOD 4 TO 3"), {{-3, 0, 0}, {6, 0, 0}}), (std::vector<double>{0, 5}));
+  EXPECT_EQ(run_body(loop("-3 TO N MOD -4"), {{-3, 0, 0}, {6, 0, 0}}), (std::vector<double>{-3, -3}));
+  EXPECT_EQ(run_body(loop("1 TO ABS(N) MOD 7"), {{-6, 0, 0}, {5, 0, 0}}), (std::vector<double>{21, 15}));
+  EXPECT_EQ(run_body(loop("0 TO ABS(LIMIT(-4, N, 2))"), {{-9, 0, 0}, {9, 0, 0}}), (std::vector<double>{10, 3}));
+  EXPECT_EQ(run_body(loop("1 TO LIMIT(-20, N, 20) / 4"), {{-9, 0, 0}, {9, 0, 0}}), (std::vector<double>{0, 3}));
+  EXPECT_EQ(run_body(loop("1 TO DWORD_TO_DINT(SHR(W, 28))"), {{0, -1, 0}, {0, 536870912, 0}}),
+            (std::vector<double>{120, 3}));
+  EXPECT_EQ(run_body(loop("1 TO SHL(LIMIT(0, N, 3), 2)"), {{2, 0, 0}, {9, 0, 0}}), (std::vector<double>{36, 78}));
+  EXPECT_EQ(faults_of(loop("1 TO SHL(N, 2)")), Faults{"129:3"});
+  EXPECT_EQ(faults_of(loop("1 TO N / 2")), Faults{"129:3"});
+}
+
 TEST(Bodies, AWhileThatItsNumbersEndIsUnrolled) {
   const auto body = [](const std::string& statements) {
     return "FUNCTION_BLOCK F VAR_INPUT X : INT; R : LREAL; END_VAR VAR_OUTPUT N : INT; END_VAR VAR_TEMP Y : INT; Z : "
@@ -276,6 +310,34 @@ TEST(Bodies, AChoiceOfLiteralsTakesTheTypeItIsAssignedTo) {
   EXPECT_EQ(run_body(body("REAL", "SEL(B, 0.5, 0.1)"), {{0, 0}, {1, 0}}), (std::vector<double>{0.5, 0.1F}));
   EXPECT_EQ(faults_of(body("BYTE", "SEL(B, 0, 256)")), Faults{fmt::format("{}:2", error::type_mismatch)});
   EXPECT_EQ(faults_of(body("SINT", "SEL(B, 0, X)")), Faults{fmt::format("{}:2", error::type_mismatch)});
+}
+
+TEST(Bodies, WhatIsWrongIsSaidOfWhatWasWritten) {
+  const auto first = [](const std::string& statement) {
+    Diagnostics found;
+    check(std::make_shared<const language::SourceFile>(
+              language::parse("t",
+                              "FUNCTION_BLOCK F (* @ts 1ms @body *) VAR_INPUT N : DINT; B : BOOL; END_VAR VAR_OUTPUT T "
+                              ": TIME; Y : BYTE; END_VAR\n" +
+                                  statement + " END_FUNCTION_BLOCK",
+                              found)),
+          found);
+    for (const Diagnostic& one : found.all()) {
+      if (one.place.line == 2) {
+        return fmt::format("{}+{} {} {}", one.place.column, one.place.length, one.cause, one.mend);
+      }
+    }
+    return std::string();
+  };
+  EXPECT_NE(
+      first("T := TIME;").find("'TIME' is a type, no value Name a variable; the time since the first step is TIME()"),
+      std::string::npos);
+  EXPECT_NE(first("T := TIME(1);").find("TIME() takes no argument"), std::string::npos);
+  EXPECT_EQ(first("WHILE N DO N := 0; END_WHILE;").substr(0, 4), "7+1 ");
+  EXPECT_EQ(first("REPEAT N := 0; UNTIL N END_REPEAT;").substr(0, 5), "22+1 ");
+  EXPECT_NE(
+      first("Y := SEL(B, 0, 256);").find("does not hold 256, which this choice may give Write numbers from 0 to 255."),
+      std::string::npos);
 }
 
 TEST(Bodies, TheTimeOfTheTaskIsReadInWholeMilliseconds) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "codegen/backends/c_family/names.hpp"
 #include "codegen/compile.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "codegen/parameters/apply.hpp"
@@ -224,6 +225,18 @@ FUNCTION_BLOCK T (* @ts 1ms *)
   MID_1 := MAX(MIN(A, B), MIN(MAX(A, B), C)) * 2.0;
   HIGH := MAX(A, B, C) * 2.0;
 END_FUNCTION_BLOCK)");
+}
+
+TEST(Vectors, AreOneArrayOfATargetWhereTheyBeginAtZero) {
+  const auto members = [](const std::string& bounds) {
+    const Program program = compile_text("FUNCTION_BLOCK T (* @ts 1ms *) VAR_INPUT N : ARRAY[" + bounds +
+                                         "] OF LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\nIF N[0] > 0.0 THEN Y := "
+                                         "1.0; END_IF; END_FUNCTION_BLOCK\n");
+    return port_members(program.graph.inputs);
+  };
+  EXPECT_THAT(members("0..1"), ElementsAre("n[0]", "n[1]"));
+  EXPECT_THAT(members("-1..1"), ElementsAre("n_m1", "n_0", "n_1"));
+  EXPECT_THAT(members("-2..0"), ElementsAre("n_m2", "n_m1", "n_0"));
 }
 
 TEST(Vectors, AreLaidOutAndStayWhatTheyAre) {

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "support/errors.hpp"
 #include "tests/robots/axes.hpp"
 
@@ -31,6 +33,7 @@ TEST(Joint, IsReadFromTheUnitsOfAServo) {
   EXPECT_NEAR(joint.damping, 6e-4, 1e-18);
   EXPECT_NEAR(joint.friction, 0.004, 1e-17);
   EXPECT_EQ(joint.stiffness, 0.0);
+  EXPECT_FALSE(std::signbit(joint.stiffness));  // "-0.0" in the JSON
   EXPECT_EQ(joint.offset, 0.0);
   ASSERT_TRUE(joint.actuator);
   EXPECT_EQ(joint.actuator->input, "I");

@@ -8,6 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "support/rounded_text.hpp"
+
 namespace hysteron {
 namespace {
 
@@ -29,6 +31,17 @@ TEST(NumberText, IsWhatAPersonWouldWrite) {
   EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "inf");
   EXPECT_EQ(number_text(-std::numeric_limits<double>::infinity()), "-inf");
   EXPECT_EQ(number_text(std::nan("")), "nan");
+}
+
+TEST(NumberText, ARoundingIsNotShownToAReader) {
+  EXPECT_EQ(number_text(300'000 * 1e-9), "0.00030000000000000003");
+  EXPECT_EQ(rounded_text(300'000 * 1e-9), "0.0003");
+  EXPECT_EQ(rounded_text(50e-6), "0.00005");
+  EXPECT_EQ(rounded_text(0.0033052155286844667), "0.00330521552868");
+  EXPECT_EQ(rounded_text(-0.1 - 0.2), "-0.3");
+  EXPECT_EQ(rounded_text(0.0), "0");
+  EXPECT_EQ(rounded_text(infinity), "inf");
+  EXPECT_EQ(rounded_text(not_a_number), "nan");
 }
 
 TEST(NumberText, TwoNumbersThatDifferHaveTextsThatShowBy) {

@@ -99,6 +99,19 @@ TEST(CommandLine, EmptyValuesAreRefused) {
   EXPECT_EQ(bench.names(), before);
 }
 
+/// `run` takes it for the standard output; elsewhere it would be the name of a file.
+TEST(CommandLine, ADashIsNoNameOfAFile) {
+  const test::Workbench bench;
+  for (const std::string line :
+       {"export axis.st --out -", "import drawing.xml --out -", "generate axis.st --out - --target c", "man --out -",
+        "tune p.st --log log.csv --params p.toml --out tuned.toml --report -"}) {
+    const auto outcome = bench.shell("hysteron " + line);
+    EXPECT_EQ(outcome.code, 2) << line;
+    EXPECT_THAT(outcome.err, AllOf(StartsWith("HY730 error: hysteron "), HasSubstr(" takes no -,"))) << line;
+  }
+  EXPECT_EQ(bench.shell("test -e ./-").code, 1);
+}
+
 TEST(CommandLine, AnOptionGivenTwiceIsSaidToBe) {
   const test::Workbench bench;
   const auto outcome = bench.shell("hysteron run plant.st --in a.csv --in b.csv --out out.csv");

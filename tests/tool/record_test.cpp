@@ -1,6 +1,8 @@
 // What `hysteron record` says of a file, and what run and tune say of what they take from one.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -33,6 +35,23 @@ TEST(RecordCommand, SaysWhatWasUnderstood) {
   EXPECT_EQ(found.at("columns").at(0).at("resolution"), 250.0);
   EXPECT_NEAR(found.at("columns").at(0).at("repeats").get<double>(), 1.0 / 3.0, 1e-12);
   EXPECT_DOUBLE_EQ(found.at("columns").at(0).at("rest"), 0.001);
+}
+
+/// Lines between the readings of an encoder have steps of any size.
+TEST(RecordCommand, ResamplingKeepsTheStepOfASensor) {
+  const test::Workbench bench;
+  std::string log = "t,y,on\n";
+  for (int k = 0; k < 200; ++k) {
+    log += fmt::format("{:.3f},{:.2f},{}\n", 0.005 * k + 0.002 * (k % 3 % 2), 0.05 * (k / 7), k / 50 % 2);
+  }
+  bench.write("log.csv", log);
+  const auto outcome = bench.shell("hysteron record log.csv --resample linear --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto columns = nlohmann::json::parse(outcome.out).at("columns");
+  EXPECT_NEAR(columns.at(0).at("resolution").get<double>(), 0.05, 1e-9);
+  EXPECT_GE(columns.at(0).at("noise").get<double>(), 0.9999 * 0.05 / std::sqrt(12.0));
+  EXPECT_EQ(columns.at(1).at("resolution"), 1.0);
+  EXPECT_LT(columns.at(1).at("noise").get<double>(), 0.02);
 }
 
 TEST(RecordCommand, DrawsItsColumns) {

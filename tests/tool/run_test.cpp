@@ -336,6 +336,14 @@ TEST_F(Run, ParametersThatDoNotFitAreRefused) {
   EXPECT_THAT(with("[fit.AMP]\nC9 = {}\n"), AllOf(HasSubstr("HY603 error: p.toml:2:1: "), HasSubstr("AMP.C9")));
 }
 
+TEST_F(Run, ASampleTimeIsToldAsItIsWritten) {
+  bench.write("plant.st",
+              "FUNCTION_BLOCK P (* @ts 300us *) VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"
+              "Y := X + 1.0;\nEND_FUNCTION_BLOCK\n");
+  bench.write("log.csv", "t,x\n0,1\n0.0005,1\n0.001,1\n");
+  EXPECT_THAT(refusal(), HasSubstr("The record has a sample time of 0.0005 s, P one of 0.0003 s."));
+}
+
 TEST_F(Run, TheTopBlockCanBeChosen) {
   bench.write("plant.st",
               "FUNCTION_BLOCK A (* @ts 1ms *) VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"

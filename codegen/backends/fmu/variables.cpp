@@ -10,12 +10,15 @@
 #include "codegen/backends/c_family/names.hpp"
 #include "codegen/backends/shared/port_groups.hpp"
 #include "codegen/graph/units.hpp"
+#include "support/element_name.hpp"
 
 namespace hysteron {
 namespace {
 
 FmuVariable of_port(const Port& port, FmuVariable::Role role, std::string_view group, std::string_view member) {
-  return {.name = port.name,
+  // The structured names of FMI have no index below 0; in quotes any text is a name.
+  const auto element = element_of(port.name);
+  return {.name = element && element->index < 0 ? fmt::format("'{}'", port.name) : port.name,
           .role = role,
           .type = port.type,
           .unit = port.unit,

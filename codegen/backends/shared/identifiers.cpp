@@ -28,7 +28,11 @@ void append_identifier(std::string& text, std::initializer_list<std::string_view
     if (!text.empty() && !part.empty()) {
       append_letter(text, '.', letter_case);
     }
-    std::ranges::for_each(part, [&](char letter) { append_letter(text, letter, letter_case); });
+    char before = 0;
+    for (const char letter : part) {  // Y[-1] is y_m1: y_1 is Y[1]
+      append_letter(text, before == '[' && letter == '-' ? 'm' : letter, letter_case);
+      before = letter;
+    }
   }
   if (text.empty() || is_digit(text.front())) {
     text.insert(0, "_");

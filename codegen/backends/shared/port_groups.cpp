@@ -11,7 +11,10 @@ std::vector<PortGroup> port_groups(const std::vector<Port>& ports) {
   for (std::uint32_t i = 0; i < ports.size();) {
     const auto begin = element_of(ports[i].name);
     std::uint32_t length = 1;
-    if (begin && begin->index == 0) {
+    const auto before = i > 0 ? element_of(ports[i - 1].name) : std::nullopt;
+    // What begins below 0 is no array of a target, in which 0 is the first.
+    const bool goes_on = begin && before && before->vector == begin->vector && before->index < 0;
+    if (begin && begin->index == 0 && !goes_on) {
       const auto continues = [&](std::size_t at) {
         const auto element = at < ports.size() ? element_of(ports[at].name) : std::nullopt;
         return element && element->vector == begin->vector && element->index == length &&

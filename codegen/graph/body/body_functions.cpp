@@ -87,6 +87,10 @@ Value Body::call(const syntax::Call& call, language::Span span) {
       return *time;
     }
   }
+  if (name == "TIME" && !values.empty()) {
+    return refuse(error::unknown_function, call.function.span, "TIME() takes no argument",
+                  "Write TIME(); a number of milliseconds becomes a TIME by DINT_TO_TIME( … ).");
+  }
   for (const auto& found :
        {conversion(name, values), of_number(name, values), chosen(name, values), function(name, values)}) {
     if (found) {
@@ -156,7 +160,12 @@ std::optional<Value> Body::of_number(const std::string& name, const std::vector<
     if (is_integer(x.type)) {
       const Value kept = computer_.fit(x, x.type);
       const Value below = computer_.binary(Operator::Less, kept, computer_.literal(x.type, 0.0));
-      return computer_.fit(computer_.select(below, computer_.negative(kept), kept), x.type);
+      Value result = computer_.select(below, computer_.negative(kept), kept);
+      if (info(x.type).below_zero && kept.low > lowest(Plain::Dint)) {  // whose negative is itself
+        result.low = std::max<std::int64_t>({0, kept.low, -kept.high});
+        result.high = std::max(kept.high, -kept.low);
+      }
+      return computer_.fit(result, x.type);
     }
     const Value number = as_number(x);
     return number.valid() ? result(Op::Abs, {number}, number.type) : number;

@@ -131,8 +131,9 @@ std::optional<Body::Counting> Body::counting(const syntax::For& node, language::
            count.by == 0.0 ? std::string("this FOR never ends")
                            : fmt::format("this FOR {} {} rounds, more than {}", count.known() ? "has" : "may have",
                                          most, most_rounds),
-           count.known() ? "A loop is unrolled: give it fewer rounds."
-                         : "Bound it by what there can be: FOR I := 1 TO LIMIT(0, N, 32) DO.");
+           count.known()      ? "A loop is unrolled: give it fewer rounds."
+           : count.to.known() ? "Bound where it begins by what there can be: FOR I := LIMIT(1, N, 32) TO 32 DO."
+                              : "Bound it by what there can be: FOR I := 1 TO LIMIT(0, N, 32) DO.");
     return std::nullopt;
   }
   return most < 1.0 || holds(count) ? std::optional(count) : std::nullopt;

@@ -172,4 +172,58 @@ void Body::execute(const syntax::Statement& statement) {
   }
 }
 
+void Body::assign(const syntax::Access& access, const Value& value, language::Span span) {
+  const auto list = choices(access);
+  if (list.empty() || !value.valid()) {
+    return;
+  }
+  const std::string root = upper(access.name.text);
+  const auto member = std::ranges::find(scope_->members, root, &Member::name);
+  if (member != scope_->members.end() && member->role == syntax::Role::Constant) {
+    refuse(error::double_drive, access.name.span, fmt::format("'{}' cannot be assigned to", access.name.text),
+           "It is a constant: declare it between VAR and END_VAR.");
+    return;
+  }
+  for (const Choice& one : list) {
+    if (one.place->leaf == Place::no_leaf) {
+      refuse(error::type_mismatch, span, fmt::format("'{}' is no single value", access.name.text),
+             "Assign to one of its members or elements.");
+      return;
+    }
+    const Plain type = leaves_[one.place->leaf].type;
+    Value kept;
+    if (one.bit >= 0) {
+      const double mask = static_cast<double>(std::int64_t{1} << one.bit);
+      const Value old = read(one.place->leaf);
+      const Value all = computer_.literal(type, static_cast<double>((std::int64_t{1} << info(type).width) - 1) - mask);
+      const Value cleared = computer_.binary(Operator::And, old, all);
+      const Value set = computer_.binary(Operator::Or, cleared, computer_.literal(type, mask));
+      const Value truth = computer_.assignable(value, Plain::Bool, "a bit");
+      kept = truth.valid() ? computer_.fit(computer_.select(truth, set, cleared), type) : Value{};
+    } else {
+      kept = computer_.assignable(value, type, std::string(access.name.text));
+    }
+    if (!kept.valid()) {
+      return;
+    }
+    write(one.place->leaf, one.condition ? computer_.select(*one.condition, kept, read(one.place->leaf)) : kept);
+  }
+}
+
+void Body::copy(Place& to, Place& from, language::Span span) {
+  if (to.leaf != Place::no_leaf && from.leaf != Place::no_leaf) {
+    write(to.leaf, computer_.assignable(read(from.leaf), leaves_[to.leaf].type, to.path));
+    return;
+  }
+  if (to.parts.size() != from.parts.size() || to.leaf != from.leaf ||
+      (to.type && to.type->kind != BodyType::Kind::Array && to.type->kind != BodyType::Kind::Structure)) {
+    refuse(error::type_mismatch, span, fmt::format("'{}' and '{}' are not of one type", to.path, from.path),
+           "Copy an array or a structure into one of the same type.");
+    return;
+  }
+  for (std::size_t i = 0; i < to.parts.size(); ++i) {
+    copy(*to.parts[i], *from.parts[i], span);
+  }
+}
+
 }  // namespace hysteron::bodies

@@ -66,7 +66,11 @@ Value Body::value(language::ExpressionId id) {
 Value Body::condition(language::ExpressionId id) {
   const Value result = value(id);
   if (result.valid() && result.type != Plain::Bool) {
-    return computer_.assignable(result, Plain::Bool, "a condition");
+    const auto outer = computer_.span();
+    computer_.at(place_of(expression(id).span));
+    const Value refused = computer_.assignable(result, Plain::Bool, "a condition");
+    computer_.at(outer);
+    return refused;
   }
   return result;
 }

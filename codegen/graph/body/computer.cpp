@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "support/errors.hpp"
+#include "support/numbers.hpp"
 
 namespace hysteron::bodies {
 
@@ -135,7 +136,13 @@ Value Computer::assignable(const Value& value, Plain type, const std::string& ta
                                value.loose ? "a literal that it does not hold" : from.name),
                    std::move(mend));
   };
-  const std::string conversion = fmt::format("Convert it: {}_TO_{}( … ).", from.name, to.name);
+  double number = 0.0;
+  // A number as a TIME is milliseconds: whoever writes a plain one means seconds as often.
+  const bool is_plain_time = to.family == Family::Duration && value.loose && constant(value, number) &&
+                             std::abs(number) < 1e9 && (number == 0.0 || std::abs(number) >= 1e-3);
+  const std::string conversion = is_plain_time
+                                     ? fmt::format("Write it with its unit: T#{0}s, or T#{0}ms.", number_text(number))
+                                     : fmt::format("Convert it: {}_TO_{}( … ).", from.name, to.name);
   if (value.type == type) {
     return fit(value, type);
   }
@@ -147,6 +154,12 @@ Value Computer::assignable(const Value& value, Plain type, const std::string& ta
                              ? value.low >= std::min(lowest(type), -highest(type) - 1) && value.low <= highest(type)
                          : value.untyped ? value.low >= lowest(type) && value.high <= highest(type)
                                          : lowest(value.type) >= lowest(type) && highest(value.type) <= highest(type);
+    if (!reaches && value.untyped && !value.loose) {
+      return refused(error::type_mismatch,
+                     fmt::format("{} is {}, and does not hold {}, which this choice may give", target, to.name,
+                                 value.high > highest(type) ? value.high : value.low),
+                     fmt::format("Write numbers from {} to {}.", lowest(type), highest(type)));
+    }
     return reaches ? fit(value, type) : mismatch(value.loose ? "Write a number within its range." : conversion);
   }
   if (is_number(value.type) && is_number(type) && (value.loose || value.untyped || type == Plain::Lreal)) {

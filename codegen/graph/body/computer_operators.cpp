@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::int64_t lowest_whole = std::numeric_limits<std::int32_t>::min();
 constexpr std::int64_t highest_whole = std::numeric_limits<std::int32_t>::max();
+constexpr std::int64_t every_bit = std::numeric_limits<std::uint32_t>::max();
 
 bool is_comparison(Operator op) {
   return op >= Operator::Less && op <= Operator::NotEqual;
@@ -155,13 +156,15 @@ Value Computer::integer(Op op, const Value& left, const Value& right, Plain type
 Value Computer::divided(bool remainder, const Value& left, const Value& right, Plain type) {
   if (!left.beyond_dint() && !right.beyond_dint()) {
     const Value result = integer(remainder ? Op::IntModulo : Op::IntDivide, left, right, type);
-    if (left.low < 0 || right.low < 0) {
+    if (!remainder && right.low < 0) {
       return result;
     }
-    // A division by 0 gives 0.
-    const std::int64_t high =
-        remainder ? std::max<std::int64_t>(0, right.high - 1) : left.high / std::max<std::int64_t>(1, right.low);
-    return ranged(result.wire, type, 0, std::min(high, left.high));
+    // A division by 0 gives 0, and a remainder has the sign of what is divided.
+    const std::int64_t most = std::max<std::int64_t>(0, std::max(right.high, -right.low) - 1);
+    const std::int64_t least = std::max<std::int64_t>(1, right.low);
+    const std::int64_t low = remainder ? std::max(-most, left.low) : left.low / least;
+    const std::int64_t high = remainder ? std::min(most, left.high) : left.high / least;
+    return ranged(result.wire, type, std::min<std::int64_t>(0, low), std::max<std::int64_t>(0, high));
   }
   // 32 bits without a sign: an LREAL holds both exactly, and the whole part of their quotient.
   const Wire divisor = real_of(right);
@@ -368,12 +371,28 @@ Value Computer::shifted(const Value& value, const Value& places, bool left) {
     const Wire beyond = apply(Op::IntNotEqual, {apply(Op::IntAnd, {places.wire, whole(-32)}), whole(0)});
     result.wire = apply(Op::SelectInt, {beyond, whole(0), result.wire});
   }
+  const std::int64_t low = result.low;
+  const std::int64_t high = result.high;
   result.low = lowest_whole;
   result.high = highest_whole;
-  if (!left && value.low >= 0) {
-    const bool fixed = constant(places, known) && known >= 0.0 && known <= 31.0;
+  if (constant(places, known) && known != 0.0) {
+    const bool none = known < 0.0 || known > 31.0;
+    const int n = none ? 0 : static_cast<int>(known);
+    if (none) {
+      result.low = result.high = 0;
+    } else if (!left) {  // zeros come in from the left
+      result.low = low < 0 ? 0 : low >> n;
+      result.high = low < 0 ? every_bit >> n : high >> n;
+    } else if (low >= 0 && high <= highest_whole >> n) {
+      result.low = low << n;
+      result.high = high << n;
+    }
+  } else if (constant(places, known)) {  // by 0 places
+    result.low = low;
+    result.high = high;
+  } else if (!left && low >= 0) {
     result.low = 0;
-    result.high = fixed ? value.high >> static_cast<int>(known) : value.high;
+    result.high = high;
   }
   return fit(result, value.type);
 }

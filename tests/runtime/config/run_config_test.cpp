@@ -181,6 +181,8 @@ TEST(RunConfig, WhatIsWrongIsWhatIsNamed) {
             "804@2:8 safe must be a number, of a BOOL 0 or 1. | write it as in safe = 0.");
   EXPECT_EQ(error_of(y + "[web]\nrights = [\"force\", \"write\"]\n"),
             "804@4:10 The live page has no right \"write\". | use some of: parameters, reset, force.");
+  EXPECT_EQ(error_of(y + "[web]\nrights = [1]\n"),
+            "804@4:10 rights must be a list of texts. | write it as in rights = [\"parameters\", \"reset\"].");
   EXPECT_EQ(error_of(y + "[online_change]\nsocket = \"a\"\nload = 2\n"),
             "805@5:8 load must be from 0.001 to 1. | choose a value in that range, or leave the key out.");
   EXPECT_EQ(error_of(y + "[modbus]\nlisten = \"\"\n"),

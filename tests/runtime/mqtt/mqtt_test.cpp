@@ -11,6 +11,7 @@
 #include "runtime/mqtt/sparkplug.hpp"
 #include "tests/runtime/mqtt/mqtt_bench.hpp"
 #include "tests/runtime/mqtt/sparkplug_decoder.hpp"
+#include "tests/support/file_size_limit.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -171,6 +172,57 @@ TEST_F(Publishing, WhatWaitsAtTheEndIsKeptForTheNextStart) {
   EXPECT_THAT(bench.said(), HasSubstr("11 rows wait in "));
   bench.stop();
   EXPECT_EQ(OutboxFile(folder / "rows.sqlite", {"U", "Y"}).rows().size(), 11U);
+}
+
+/// What went to the file before the disk was full waits there, and is not lost.
+TEST_F(Publishing, AFullDiskAtTheEndLosesWhatIsNotInTheFileAlone) {
+  const hysteron::test::ScratchFolder folder;
+  const Broker broker;
+  MqttBench bench(broker.port());
+  bench.settings.file = folder / "rows.sqlite";
+  bench.start();
+  bench.turn();
+  bench.run(100);
+  bench.turn();
+  bench.pass(2100 * MqttBench::ms);
+  bench.turn();  // eleven rows are on the disk
+  {
+    const hysteron::test::FileSizeLimit limit(1024);
+    bench.run(200);
+    bench.turn();
+    bench.pass(2100 * MqttBench::ms);
+    bench.turn();
+    bench.finish();
+  }
+  EXPECT_EQ(bench.count().lost, 20U);
+  EXPECT_EQ(bench.count().waiting, 11U);
+  const std::string said = bench.said();
+  EXPECT_THAT(said, HasSubstr("rows that wait are in memory alone: "));
+  EXPECT_THAT(said, HasSubstr("11 rows wait in "));
+  EXPECT_THAT(bench.remarks().problem(), HasSubstr("20 since the start"));
+  bench.stop();
+  EXPECT_EQ(OutboxFile(folder / "rows.sqlite", {"U", "Y"}).rows().size(), 11U);
+}
+
+TEST_F(Publishing, AFileOfAnotherTaskIsLeftAloneAndTheMendIsSaid) {
+  const hysteron::test::ScratchFolder folder;
+  const Broker broker;
+  MqttBench bench(broker.port());
+  bench.settings.file = folder / "rows.sqlite";
+  bench.settings.owner = "STAGE on topic a";
+  bench.start();
+  bench.turn();
+  bench.run(100);
+  bench.turn();
+  bench.finish();
+  bench.stop();
+  bench.settings.owner = "STAGEB on topic b";
+  bench.start();
+  bench.turn();
+  EXPECT_THAT(bench.said(), HasSubstr("holds 11 rows of STAGE on topic a, and is left alone. Each task needs a file of "
+                                      "its own: write another one under [mqtt]"));
+  bench.stop();
+  EXPECT_EQ(OutboxFile(folder / "rows.sqlite", {"U", "Y"}, "STAGE on topic a").rows().size(), 11U);
 }
 
 TEST_F(Publishing, AFileThatCannotBeWrittenIsSaidAndRowsGoByMemory) {

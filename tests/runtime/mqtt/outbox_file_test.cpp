@@ -1,9 +1,11 @@
 // Rows that wait for the broker, on the disk.
 #include "runtime/mqtt/outbox_file.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -17,6 +19,8 @@ namespace {
 using database::DatabaseError;
 using database::Trouble;
 using test::numbered_row;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
 
 const std::vector<std::string> two_points{"U", "Y"};
 
@@ -119,6 +123,61 @@ TEST(OutboxFile, ADamagedFileIsPutAsideAndAnotherProgramsIsLeftAlone) {
   const std::string before = hysteron::test::contents_of(folder / "other.sqlite");
   EXPECT_THROW(OutboxFile(folder / "other.sqlite", two_points), DatabaseError);
   EXPECT_TRUE(hysteron::test::contents_of(folder / "other.sqlite") == before);
+}
+
+std::string refusal_of(const std::filesystem::path& file, const std::string& owner) {
+  try {
+    const OutboxFile opened(file, two_points, owner);
+  } catch (const OutboxOfAnother& problem) {
+    return problem.what();
+  }
+  return "taken";
+}
+
+TEST(OutboxFile, RowsOfAnotherTaskOrTopicAreLeftAlone) {
+  const hysteron::test::ScratchFolder folder;
+  const std::filesystem::path path = folder / "rows.sqlite";
+  {
+    OutboxFile file(path, two_points, "STAGE on topic a");
+    add(file, 3);
+  }
+  for (const char* const other : {"STAGEB on topic b", "STAGE on topic b"}) {
+    EXPECT_THAT(refusal_of(path, other), EndsWith("rows.sqlite: holds 3 rows of STAGE on topic a, and is left alone"));
+  }
+  {
+    OutboxFile file(path, two_points, "STAGE on topic a");
+    ASSERT_EQ(file.rows().size(), 3U);
+    EXPECT_EQ(file.rows().front().cycle, 0U);
+    file.follow(3, {});
+  }
+  EXPECT_EQ(refusal_of(path, "STAGEB on topic b"), "taken") << "nothing waits in it";
+  {
+    OutboxFile file(path, two_points, "STAGEB on topic b");
+    add(file, 1);
+  }
+  EXPECT_THAT(refusal_of(path, "STAGE on topic a"), HasSubstr("holds 1 rows of STAGEB on topic b"));
+}
+
+TEST(OutboxFile, AnotherProcessThatHasItIsNamed) {
+  const hysteron::test::ScratchFolder folder;
+  const std::filesystem::path path = folder / "rows.sqlite";
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const OutboxFile file(path, two_points, "STAGE on topic a");
+    (void)!::write(ends[1], "x", 1);
+    for (;;) {
+      ::pause();
+    }
+  }
+  char told = 0;
+  ASSERT_EQ(::read(ends[0], &told, 1), 1);
+  EXPECT_THAT(refusal_of(path, "STAGEB on topic b"), HasSubstr(fmt::format("rows.sqlite: process {} (", child)));
+  (void)::kill(child, SIGKILL);
+  (void)::waitpid(child, nullptr, 0);
+  ::close(ends[0]);
+  ::close(ends[1]);
 }
 
 TEST(OutboxFile, WhatIsKilledAtAnyMomentIsWholeAndHasAllThatWasTold) {

@@ -12,7 +12,6 @@ namespace hysteron::runtime {
 namespace {
 
 constexpr std::size_t longest_line = 500;  // less than a pipe takes at once
-constexpr std::chrono::seconds pace{1};
 constexpr std::chrono::seconds time_to_answer{1};
 
 /// What to look for.
@@ -107,11 +106,9 @@ std::string FaultNotices::last_of(const FaultReport& report) const {
 }
 
 std::string FaultNotices::line(const FaultReport& report, Clock::time_point now) {
-  if (report == told_ || now < next_) {
+  if (!news_.take(report, now)) {
     return {};
   }
-  next_ = now + pace;
-  told_ = report;
   return report.fault == Fault::none
              ? fmt::format("none any more; {} since the start, the last: {}.", report.count, last_of(report))
              : fmt::format("{}: {}; {} since the start.", last_of(report), meaning_of(report.fault), report.count);
@@ -166,11 +163,9 @@ std::vector<std::string> AbsenceNotices::lines(const std::vector<std::string>& a
 }
 
 std::string ForceNotices::line(const std::vector<std::string>& forced, Clock::time_point now) {
-  if (forced == told_ || now < next_) {
+  if (!news_.take(forced, now)) {
     return {};
   }
-  next_ = now + pace;
-  told_ = forced;
   return forced.empty()
              ? "no input is forced any more."
              : fmt::format("{} from the live page, until that page is closed or ends it.", fmt::join(forced, ", "));
@@ -196,7 +191,7 @@ void RunNotices::look() {
 }
 
 void RunNotices::last_look() {
-  look_at_forces(ForceNotices::Clock::now() + ForceNotices::pace);
+  look_at_forces(ForceNotices::Clock::now() + pace_of_lines);
   look_beside();
 }
 

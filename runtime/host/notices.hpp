@@ -39,6 +39,30 @@ class WriteNotices {
   bool told_trace_ = false;
 };
 
+/// Of each kind of news a line is told this often at the most.
+inline constexpr std::chrono::seconds pace_of_lines{1};
+
+/// What was told last of something that changes, and when.
+template <class Told>
+class PacedNews {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// Whether `newest` is to be told at this time; it counts as told then.
+  [[nodiscard]] bool take(const Told& newest, Clock::time_point now) {
+    if (newest == told_ || now < next_) {
+      return false;
+    }
+    next_ = now + pace_of_lines;
+    told_ = newest;
+    return true;
+  }
+
+ private:
+  Told told_{};
+  Clock::time_point next_{};
+};
+
 /// The faults of the task, a line a second at the most: those that come and go faster are counted in the next.
 class FaultNotices {
  public:
@@ -53,8 +77,7 @@ class FaultNotices {
 
  private:
   std::vector<std::string> ports_{};  ///< inputs, outputs
-  FaultReport told_{};
-  Clock::time_point next_{};
+  PacedNews<FaultReport> news_{};
 };
 
 /// Devices that have never answered, and that the task goes on without: told once they have had some time, and told
@@ -77,15 +100,12 @@ class ForceNotices {
  public:
   using Clock = std::chrono::steady_clock;
 
-  static constexpr std::chrono::seconds pace{1};
-
   /// What is to be said; `forced`: as TaskDoor::forced gives them. Empty where nothing changed, or the last line is not
-  /// as old as `pace`.
+  /// as old as `pace_of_lines`.
   [[nodiscard]] std::string line(const std::vector<std::string>& forced, Clock::time_point now);
 
  private:
-  std::vector<std::string> told_{};
-  Clock::time_point next_{};
+  PacedNews<std::vector<std::string>> news_{};
 };
 
 /// A line for each device that no input and no output of the task lies on.

@@ -40,6 +40,12 @@ struct ElementName {
   return std::string(vector) + "[" + std::to_string(index) + "]";
 }
 
+/// `Y_2`, and `Y_M1` of `Y[-1]`: an element as a variable of its own, where a name has no brackets.
+[[nodiscard]] inline std::string flat_element_name(std::string_view vector, std::int64_t index) {
+  const std::string digits = std::to_string(index);
+  return std::string(vector) + "_" + (index < 0 ? "M" + digits.substr(1) : digits);
+}
+
 /// A name as a key of TOML: that of an element stands in quotes, "Y[2]".
 [[nodiscard]] inline std::string toml_key(const std::string& name) {
   return element_of(name) ? "\"" + name + "\"" : name;

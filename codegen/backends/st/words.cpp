@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <unordered_set>
 
 #include "codegen/graph/names.hpp"
@@ -198,8 +197,7 @@ std::string st_pin_name(std::string_view name, const StDialect& dialect) {
   const bool kept = dialect.shape == StDialect::Shape::OneFile || is_instruction(name) ||
                     !(dialect.shape == StDialect::Shape::Source ? is_scl_word(name) : is_st_word(name));
   if (const auto element = element_of(name)) {  // a pin for each element of a vector
-    return fmt::format("{}_{}{}", st_pin_name(element->vector, dialect), element->index < 0 ? "M" : "",
-                       std::abs(element->index));
+    return flat_element_name(st_pin_name(element->vector, dialect), element->index);
   }
   return kept ? std::string(name) : std::string(name) + "_2";
 }

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "codegen/graph/body/body.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::bodies {
@@ -92,9 +93,7 @@ std::unique_ptr<Place> Body::make(const TypeRef& type, const std::string& path, 
       break;
     case BodyType::Kind::Array:
       for (std::int64_t i = type->low; i <= type->high && leaves_.size() <= most_leaves; ++i) {
-        place->parts.push_back(make(type->element,
-                                    fmt::format("{}_{}", path, i < 0 ? fmt::format("M{}", -i) : fmt::format("{}", i)),
-                                    span, memory));
+        place->parts.push_back(make(type->element, flat_element_name(path, i), span, memory));
       }
       break;
     case BodyType::Kind::Library:

@@ -360,8 +360,9 @@ Value Computer::shifted(const Value& value, const Value& places, bool left) {
   const Op op = left ? Op::IntShiftLeft : Op::IntShiftRight;
   Value result = fit(value, value.type);
   double known = 0.0;
-  if (constant(places, known)) {
-    const auto n = static_cast<std::int64_t>(known);
+  const bool is_fixed = constant(places, known);
+  const auto n = static_cast<std::int64_t>(known);
+  if (is_fixed) {
     result.wire = n == 0 ? result.wire : (n < 0 || n > 31 ? whole(0) : apply(op, {result.wire, whole(n)}));
   } else {
     for (std::int64_t bit = 16; bit > 0; bit /= 2) {
@@ -375,24 +376,22 @@ Value Computer::shifted(const Value& value, const Value& places, bool left) {
   const std::int64_t high = result.high;
   result.low = lowest_whole;
   result.high = highest_whole;
-  if (constant(places, known) && known != 0.0) {
-    const bool none = known < 0.0 || known > 31.0;
-    const int n = none ? 0 : static_cast<int>(known);
-    if (none) {
-      result.low = result.high = 0;
-    } else if (!left) {  // zeros come in from the left
-      result.low = low < 0 ? 0 : low >> n;
-      result.high = low < 0 ? every_bit >> n : high >> n;
-    } else if (low >= 0 && high <= highest_whole >> n) {
-      result.low = low << n;
-      result.high = high << n;
+  if (!is_fixed) {
+    if (!left && low >= 0) {
+      result.low = 0;
+      result.high = high;
     }
-  } else if (constant(places, known)) {  // by 0 places
+  } else if (n == 0) {
     result.low = low;
     result.high = high;
-  } else if (!left && low >= 0) {
-    result.low = 0;
-    result.high = high;
+  } else if (n < 0 || n > 31) {
+    result.low = result.high = 0;
+  } else if (!left) {  // zeros come in from the left
+    result.low = low < 0 ? 0 : low >> n;
+    result.high = low < 0 ? every_bit >> n : high >> n;
+  } else if (low >= 0 && high <= highest_whole >> n) {
+    result.low = low << n;
+    result.high = high << n;
   }
   return fit(result, value.type);
 }

@@ -156,34 +156,42 @@ TEST_F(Publishing, WhatWaitsOnTheDiskOutlivesTheProcess) {
   EXPECT_TRUE(OutboxFile(folder / "rows.sqlite", {"U", "Y"}).rows().empty()) << "the broker has them";
 }
 
+/// Eleven rows wait, and the broker has answered none.
+struct ElevenRows {
+  ElevenRows() { bench.settings.file = folder / "rows.sqlite"; }
+  void begin() {
+    bench.start();
+    bench.turn();
+    bench.run(100);
+    bench.turn();
+  }
+  [[nodiscard]] std::size_t rows_in_the_file(const std::string& owner = "") const {
+    return OutboxFile(bench.settings.file, {"U", "Y"}, owner).rows().size();
+  }
+
+  hysteron::test::ScratchFolder folder;
+  Broker broker;
+  MqttBench bench{broker.port()};
+};
+
 /// An end in order keeps all that waits, and loses nothing.
 TEST_F(Publishing, WhatWaitsAtTheEndIsKeptForTheNextStart) {
-  const hysteron::test::ScratchFolder folder;
-  const Broker broker;
-  MqttBench bench(broker.port());
-  bench.settings.file = folder / "rows.sqlite";
-  bench.start();
-  bench.turn();
-  bench.run(100);
-  bench.turn();
+  ElevenRows waiting;
+  MqttBench& bench = waiting.bench;
+  waiting.begin();
   bench.finish();
   EXPECT_EQ(bench.count().lost, 0U);
   EXPECT_EQ(bench.count().waiting, 11U);
   EXPECT_THAT(bench.said(), HasSubstr("11 rows wait in "));
   bench.stop();
-  EXPECT_EQ(OutboxFile(folder / "rows.sqlite", {"U", "Y"}).rows().size(), 11U);
+  EXPECT_EQ(waiting.rows_in_the_file(), 11U);
 }
 
 /// What went to the file before the disk was full waits there, and is not lost.
 TEST_F(Publishing, AFullDiskAtTheEndLosesWhatIsNotInTheFileAlone) {
-  const hysteron::test::ScratchFolder folder;
-  const Broker broker;
-  MqttBench bench(broker.port());
-  bench.settings.file = folder / "rows.sqlite";
-  bench.start();
-  bench.turn();
-  bench.run(100);
-  bench.turn();
+  ElevenRows waiting;
+  MqttBench& bench = waiting.bench;
+  waiting.begin();
   bench.pass(2100 * MqttBench::ms);
   bench.turn();  // eleven rows are on the disk
   {
@@ -201,19 +209,14 @@ TEST_F(Publishing, AFullDiskAtTheEndLosesWhatIsNotInTheFileAlone) {
   EXPECT_THAT(said, HasSubstr("11 rows wait in "));
   EXPECT_THAT(bench.remarks().problem(), HasSubstr("20 since the start"));
   bench.stop();
-  EXPECT_EQ(OutboxFile(folder / "rows.sqlite", {"U", "Y"}).rows().size(), 11U);
+  EXPECT_EQ(waiting.rows_in_the_file(), 11U);
 }
 
 TEST_F(Publishing, AFileOfAnotherTaskIsLeftAloneAndTheMendIsSaid) {
-  const hysteron::test::ScratchFolder folder;
-  const Broker broker;
-  MqttBench bench(broker.port());
-  bench.settings.file = folder / "rows.sqlite";
+  ElevenRows waiting;
+  MqttBench& bench = waiting.bench;
   bench.settings.owner = "STAGE on topic a";
-  bench.start();
-  bench.turn();
-  bench.run(100);
-  bench.turn();
+  waiting.begin();
   bench.finish();
   bench.stop();
   bench.settings.owner = "STAGEB on topic b";
@@ -222,7 +225,7 @@ TEST_F(Publishing, AFileOfAnotherTaskIsLeftAloneAndTheMendIsSaid) {
   EXPECT_THAT(bench.said(), HasSubstr("holds 11 rows of STAGE on topic a, and is left alone. Each task needs a file of "
                                       "its own: write another one under [mqtt]"));
   bench.stop();
-  EXPECT_EQ(OutboxFile(folder / "rows.sqlite", {"U", "Y"}, "STAGE on topic a").rows().size(), 11U);
+  EXPECT_EQ(waiting.rows_in_the_file("STAGE on topic a"), 11U);
 }
 
 TEST_F(Publishing, AFileThatCannotBeWrittenIsSaidAndRowsGoByMemory) {

@@ -144,9 +144,10 @@ bool Rollout::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobi
   if (Foreseen* const found = jacobian == nullptr ? among_foreseen(x) : nullptr) {
     const bool has_value = found->residuals.has_value();
     if (has_value) {
-      residuals = std::move(*found->residuals);
+      residuals = *found->residuals;
     }
-    foreseen_.erase(foreseen_.begin() + (found - foreseen_.data()));
+    found->asked = true;
+    keep_some();
     return has_value;
   }
   try {

@@ -66,7 +66,8 @@ class Rollout {
       std::span<const Eigen::VectorXd> points);
 
   /// Points of which residuals() without derivatives are likely to be asked for next, before those that were foreseen
-  /// already: where it can be done, they are then run side by side.
+  /// already: where it can be done, they are then run side by side. Some of the residuals are kept: who asks once more
+  /// gets them without a run.
   void foresee(std::vector<Eigen::VectorXd> points);
   void forget_foreseen() { foreseen_.clear(); }
 
@@ -81,10 +82,13 @@ class Rollout {
   struct Foreseen {
     Eigen::VectorXd x{};
     bool done = false;
+    bool asked = false;                          ///< for, and may be once more
     std::optional<Eigen::VectorXd> residuals{};  ///< once it is done; none where it has no value
   };
   /// A point that was foreseen with enough others, with its residuals; null: it is to be run by itself.
   Foreseen* among_foreseen(const Eigen::VectorXd& x);
+  /// Where too many residuals are kept: without those that were asked for first.
+  void keep_some();
   bool all_residuals(const Eigen::VectorXd& x, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian);
   bool plain_pass(const Eigen::VectorXd& x, std::size_t experiment, Eigen::VectorXd& residuals);
   bool keeping_pass(const Eigen::VectorXd& x, std::size_t experiment, Kept& kept, Eigen::VectorXd& residuals);

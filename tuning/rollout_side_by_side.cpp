@@ -19,7 +19,7 @@ namespace {
 
 /// Eight points side by side take as long as two to four by themselves.
 constexpr std::size_t worth_side_by_side = 4;
-/// So many points are foreseen, and of those that were run and not asked for so many are kept.
+/// So many points are foreseen, and of those that were run so many are kept.
 constexpr std::size_t most_foreseen = 128;
 constexpr std::size_t most_kept = 16;
 
@@ -37,13 +37,26 @@ void Rollout::foresee(std::vector<VectorXd> points) {
   }
   std::vector<Foreseen> all;
   for (VectorXd& x : points) {
-    all.push_back({.x = std::move(x)});
+    const auto is_x = [&](const Foreseen& one) { return same_bits(one.x, x); };
+    if (const auto known = std::ranges::find_if(foreseen_, is_x); known != foreseen_.end()) {
+      all.push_back(std::move(*known));
+      foreseen_.erase(known);
+    } else if (std::ranges::none_of(all, is_x)) {
+      all.push_back({.x = std::move(x)});
+    }
   }
   std::ranges::move(foreseen_, std::back_inserter(all));
   all.resize(std::min(all.size(), most_foreseen));
   std::size_t kept = 0;
   std::erase_if(all, [&](const Foreseen& one) { return one.done && ++kept > most_kept; });
   foreseen_ = std::move(all);
+}
+
+void Rollout::keep_some() {
+  const auto asked = std::ranges::find_if(foreseen_, &Foreseen::asked);
+  if (asked != foreseen_.end() && std::ranges::count(foreseen_, true, &Foreseen::done) > std::ptrdiff_t{most_kept}) {
+    foreseen_.erase(asked);
+  }
 }
 
 Rollout::Foreseen* Rollout::among_foreseen(const VectorXd& x) {

@@ -1,6 +1,6 @@
 #include "diagnosis/faults/decays.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -8,26 +8,31 @@
 namespace hysteron::diagnosis {
 namespace {
 
-/// Σ of what is behind a sample, each the more discounted the later, and of the squares of the discounts: a decay that
-/// begins there, held against the values. To be fed from the last sample to the first.
-struct Behind {
-  double pole = 0.0;
-  double sum = 0.0;
+/// Deviations of Σ p^j·w_j, j = 0 … n − 1, of white noise w with a deviation of 1, by n from 1 on.
+std::vector<double> deviations_of_sums(double pole, std::size_t most) {
+  std::vector<double> result(most);
   double squares = 0.0;
-  void add(double value) {
-    sum = value + pole * sum;
+  for (double& one : result) {
     squares = 1.0 + pole * pole * squares;
+    one = std::sqrt(squares);
   }
-};
+  return result;
+}
 
 }  // namespace
 
+Decays::Decays(std::span<const double> values, double pole)
+    : pole_(pole),
+      values_(values),
+      left_(values.begin(), values.end()),
+      deviations_(deviations_of_sums(pole, values.size())) {}
+
 Decays::Next Decays::next() const {
   Next best;
-  Behind behind{.pole = pole_};
+  double sum = 0.0;  // of what is behind a sample, each the more discounted the later
   for (std::size_t k = left_.size(); k-- > 0;) {
-    behind.add(left_[k]);
-    const double size = std::abs(behind.sum) / std::sqrt(behind.squares);
+    sum = left_[k] + pole_ * sum;
+    const double size = std::abs(sum) / deviations_[left_.size() - 1 - k];
     if (size > best.size && !std::ranges::binary_search(leaps_, k)) {
       best = {.at = k, .size = size};
     }
@@ -36,36 +41,30 @@ Decays::Next Decays::next() const {
 }
 
 void Decays::add(std::size_t leap) {
-  leaps_.insert(std::ranges::lower_bound(leaps_, leap), leap);
-  const Signal decays = sum();
-  std::ranges::transform(values_, decays, left_.begin(), std::minus<>());
+  const auto at = leaps_.insert(std::ranges::lower_bound(leaps_, leap), leap);
+  if (at != leaps_.begin()) {
+    fit_from(at - 1);
+  }
+  fit_from(at);
+}
+
+void Decays::fit_from(std::vector<std::size_t>::const_iterator leap) {
+  const std::size_t end = leap + 1 == leaps_.end() ? values_.size() : *(leap + 1);
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t k = end; k-- > *leap;) {
+    sum = values_[k] + pole_ * sum;
+    squares = 1.0 + pole_ * pole_ * squares;
+  }
+  double decay = sum / squares;
+  for (std::size_t k = *leap; k < end; ++k, decay *= pole_) {
+    left_[k] = values_[k] - decay;
+  }
 }
 
 Signal Decays::sum() const {
-  const auto count = static_cast<Eigen::Index>(leaps_.size());
-  Eigen::MatrixXd products(count, count);  // of the decays, below the diagonal
-  Eigen::VectorXd shown(count);
-  Behind behind{.pole = pole_};
-  Eigen::Index i = count;
-  for (std::size_t k = values_.size(); k-- > 0 && i > 0;) {
-    behind.add(values_[k]);
-    if (leaps_[static_cast<std::size_t>(i - 1)] == k) {
-      --i;
-      shown[i] = behind.sum;
-      for (Eigen::Index j = 0; j <= i; ++j) {
-        const auto apart = static_cast<double>(k - leaps_[static_cast<std::size_t>(j)]);
-        products(i, j) = behind.squares * std::pow(pole_, apart);
-      }
-    }
-  }
-  const Eigen::VectorXd sizes = products.selfadjointView<Eigen::Lower>().ldlt().solve(shown);
-  Signal result(values_.size(), 0.0);
-  for (Eigen::Index leap = 0; leap < count; ++leap) {
-    result[leaps_[static_cast<std::size_t>(leap)]] = sizes[leap];
-  }
-  for (std::size_t k = 1; k < result.size(); ++k) {
-    result[k] += pole_ * result[k - 1];
-  }
+  Signal result(values_.size());
+  std::ranges::transform(values_, left_, result.begin(), std::minus<>());
   return result;
 }
 

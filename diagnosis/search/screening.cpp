@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
+#include <ranges>
 #include <span>
 #include <utility>
 
@@ -25,11 +27,7 @@ class Screening : private TriedEffect {
     if (own().has_end()) {
       try_intervals(starts);
     } else {
-      const std::vector<VectorXd> all = shapes();
-      foresee_changes(all);
-      for (const VectorXd& shape : all) {
-        try_shape(shape, starts);
-      }
+      try_shapes(shapes(), starts);
     }
     narrow(starts);
     return finished(std::move(starts), keep);
@@ -166,39 +164,56 @@ class Screening : private TriedEffect {
     const VectorXd shape = shape_of(moved);
     const std::size_t before = starts.size();
     if (is_linear_there(shape)) {
-      try_shape(shape, starts);
+      try_shapes({&shape, 1}, starts);
     }
     if (starts.size() == before) {
       try_point(moved, starts);
     }
   }
 
-  void try_shape(const VectorXd& shape, std::vector<Start>& starts) {
+  /// What a straight line through small strengths promises of a shape.
+  struct Promise {
+    VectorXd shape{};
+    std::vector<VectorXd> settings{};  ///< where it is held against the diagram: there, short of there, beyond
+    double gain = 0.0;
+  };
+
+  /// So many at a time that all points that they will ask for can be foreseen.
+  void try_shapes(std::span<const VectorXd> shapes, std::vector<Start>& starts) {
+    constexpr std::size_t most = 24;
+    for (; !shapes.empty(); shapes = shapes.subspan(std::min(most, shapes.size()))) {
+      try_some_shapes(shapes.first(std::min(most, shapes.size())), starts);
+    }
+  }
+
+  void try_some_shapes(std::span<const VectorXd> shapes, std::vector<Start>& starts) {
     const std::vector<Index> list = strengths();
-    const bool linear = is_linear_there(shape);
+    const bool linear = is_linear_there(shapes.front());
     const bool amplitudes = are_amplitudes(list);
     if (!linear && !amplitudes) {
-      try_grid(shape, list, starts);
+      for (const VectorXd& shape : shapes) {
+        try_grid(shape, list, starts);
+      }
       return;
     }
-    MatrixXd changes(background().residuals().size(), std::ssize(list));
-    VectorXd small = shape;
-    for (Index k = 0; k < std::ssize(list); ++k) {
-      const Index j = list[static_cast<std::size_t>(k)];
-      VectorXd values = shape;
-      values[j] = this->small(j, linear);
-      small[j] = values[j];
-      const VectorXd change = change_at(values);
-      if (change.size() == 0) {
-        return;
+    foresee_changes(shapes);
+    std::vector<Promise> promises;
+    std::vector<VectorXd> first;  // of a line the first mostly holds, of what is bent most are asked for
+    for (const VectorXd& shape : shapes) {
+      if (std::optional<Promise> one = promised(shape, list, linear)) {
+        const std::size_t asked = linear ? 1 : one->settings.size();
+        std::ranges::copy(one->settings | std::views::take(asked), std::back_inserter(first));
+        promises.push_back(std::move(*one));
       }
-      changes.col(k) = change;
     }
-    const bool kept = changes.squaredNorm() > 0.0 && try_linear(shape, small, list, changes, linear, starts);
-    // A short delay or lag is linear, and says nothing of a long one, as a friction that never holds says nothing of
-    // one that does: about parameters that are off it may even seem to make things worse.
-    if ((!amplitudes || !kept) && !std::exchange(grid_tried_, true)) {
-      try_grid(shape, list, starts);
+    foresee(first);
+    for (const Promise& one : promises) {
+      const bool kept = is_kept(one, linear, starts);
+      // A short delay or lag is linear, and says nothing of a long one, as a friction that never holds says nothing of
+      // one that does: about parameters that are off it may even seem to make things worse.
+      if ((!amplitudes || !kept) && !std::exchange(grid_tried_, true)) {
+        try_grid(one.shape, list, starts);
+      }
     }
   }
 
@@ -241,44 +256,61 @@ class Screening : private TriedEffect {
   [[nodiscard]] bool is_instant(Index j) const { return parameter(j).role == Role::Instant; }
   [[nodiscard]] bool is_end(Index j) const { return std::isinf(parameter(j).field.preset); }
 
-  /// Whether the diagram keeps a part of what the straight line promises.
-  bool try_linear(const VectorXd& shape, const VectorXd& small, const std::vector<Index>& list, const MatrixXd& changes,
-                  bool linear, std::vector<Start>& starts) {
+  /// None where the diagram has no value, without settings where the effect does nothing.
+  std::optional<Promise> promised(const VectorXd& shape, const std::vector<Index>& list, bool linear) {
+    MatrixXd changes(background().residuals().size(), std::ssize(list));
+    VectorXd sizes(std::ssize(list));
     VectorXd low(std::ssize(list));
     VectorXd high(std::ssize(list));
     for (Index k = 0; k < std::ssize(list); ++k) {
       const Index j = list[static_cast<std::size_t>(k)];
       const Field& field = parameter(j).field;
-      const double size = small[j] - field.neutral;
-      const double a = (field.minimum - field.neutral) / size;
-      const double b = (field.maximum - field.neutral) / size;
+      VectorXd setting = shape;
+      setting[j] = small(j, linear);
+      const VectorXd change = change_at(setting);
+      if (change.size() == 0) {
+        return std::nullopt;
+      }
+      changes.col(k) = change;
+      sizes[k] = setting[j] - field.neutral;
+      const double a = (field.minimum - field.neutral) / sizes[k];
+      const double b = (field.maximum - field.neutral) / sizes[k];
       low[k] = std::min(a, b);
       high[k] = std::max(a, b);
     }
+    Promise result{.shape = shape};
+    if (!(changes.squaredNorm() > 0.0)) {
+      return result;
+    }
     VectorXd alpha;
-    const double gain = background().gain(changes, low, high, alpha);
+    result.gain = background().gain(changes, low, high, alpha);
     VectorXd values = shape;
     for (Index k = 0; k < std::ssize(list); ++k) {
       const Index j = list[static_cast<std::size_t>(k)];
-      values[j] = parameter(j).field.neutral + alpha[k] * (small[j] - parameter(j).field.neutral);
+      values[j] = parameter(j).field.neutral + alpha[k] * sizes[k];
     }
-    // The promise is held against the diagram itself, there, short of there and, where the line is bent, beyond.
-    std::vector<VectorXd> settings;
     for (const double share : linear ? std::vector{1.0, 0.3, 0.1} : std::vector{1.0, 0.5, 0.1, 1.5, 2.2}) {
-      VectorXd& there = settings.emplace_back(shape);
+      VectorXd& there = result.settings.emplace_back(shape);
       for (const Index j : list) {
         there[j] += share * (values[j] - shape[j]);
       }
     }
-    foresee(settings);
+    return result;
+  }
+
+  /// Whether the diagram keeps a part of what the straight line promises.
+  bool is_kept(const Promise& promise, bool linear, std::vector<Start>& starts) {
     double best = 0.0;
-    for (const VectorXd& there : settings) {
-      best = std::max(best, try_point(there, starts));
-      if (best > 0.8 * gain) {
+    for (std::size_t k = 0; k < promise.settings.size(); ++k) {
+      if (linear && k == 1) {
+        foresee(std::span(promise.settings).subspan(k));
+      }
+      best = std::max(best, try_point(promise.settings[k], starts));
+      if (best > 0.8 * promise.gain) {
         break;
       }
     }
-    return best > 0.3 * gain;
+    return !promise.settings.empty() && best > 0.3 * promise.gain;
   }
 
   /// Each strength by itself over its grid; of limits also all of them at once, and each at its best.

@@ -54,7 +54,7 @@ VectorXd TriedEffect::unknowns_at(const VectorXd& setting) const {
   return x;
 }
 
-void TriedEffect::foresee(const std::vector<VectorXd>& settings) {
+void TriedEffect::foresee(std::span<const VectorXd> settings) {
   std::vector<VectorXd> points;
   points.reserve(settings.size());
   for (const VectorXd& setting : settings) {
@@ -124,7 +124,7 @@ double TriedEffect::small(Index strength, bool linear) const {
   return linear ? grid.front() : grid[grid.size() / 2];
 }
 
-void TriedEffect::foresee_changes(const std::vector<VectorXd>& shapes) {
+void TriedEffect::foresee_changes(std::span<const VectorXd> shapes) {
   if (shapes.empty()) {
     return;
   }
@@ -143,7 +143,7 @@ void TriedEffect::foresee_changes(const std::vector<VectorXd>& shapes) {
   foresee(settings);
 }
 
-void TriedEffect::foresee_moved(const std::vector<VectorXd>& moved, Index j) {
+void TriedEffect::foresee_moved(std::span<const VectorXd> moved, Index j) {
   std::vector<VectorXd> shapes;
   std::ranges::transform(moved, std::back_inserter(shapes), [&](const VectorXd& there) { return shape_of(there); });
   if (!parameter(j).strength && !shapes.empty() && is_linear_there(shapes.front())) {

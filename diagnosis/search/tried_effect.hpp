@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "diagnosis/effects/grid_points.hpp"
@@ -45,11 +46,11 @@ class TriedEffect {
   [[nodiscard]] bool is_linear_there(const VectorXd& shape);
 
   /// Settings that are likely to be tried next, before others that were foreseen.
-  void foresee(const std::vector<VectorXd>& settings);
+  void foresee(std::span<const VectorXd> settings);
   /// What each shape asks for first: the change by each of its strengths.
-  void foresee_changes(const std::vector<VectorXd>& shapes);
+  void foresee_changes(std::span<const VectorXd> shapes);
   /// The same for settings of which one parameter has moved.
-  void foresee_moved(const std::vector<VectorXd>& moved, Index parameter);
+  void foresee_moved(std::span<const VectorXd> moved, Index parameter);
 
   /// What was found, to be given away.
   [[nodiscard]] Screened with(std::vector<Start> starts) &&;

@@ -234,6 +234,28 @@ TEST(Rollout, WhatItForeseesChangesNoBit) {
   }
 }
 
+TEST(Rollout, WhoAsksOnceMoreGetsTheSame) {
+  const OutputErrorProblem problem = problem_of_chain({{"L2", "T1"}, {"G6", "K"}, {"PLAY", "WIDTH"}});
+  Rollout rollout(problem);
+  std::vector<VectorXd> points(40, about_start(problem, rollout.unknowns()));  // more than are kept
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    points[k][0] *= 1.0 + 0.01 * static_cast<double>(k / 2);  // each point twice
+  }
+  VectorXd residuals(rollout.residual_count());
+  rollout.foresee(points);
+  for (const std::size_t k : {0, 1, 0, 20, 21, 39, 0, 2, 39}) {
+    ASSERT_TRUE(rollout.residuals(points[k], residuals, nullptr));
+    residuals.setZero();  // who was answered may change what it got
+    ASSERT_TRUE(rollout.residuals(points[k], residuals, nullptr));
+    ASSERT_TRUE(same(residuals, fresh(problem, points[k]))) << k;
+  }
+  rollout.foresee(points);  // once more, some of them known
+  for (const VectorXd& x : points) {
+    ASSERT_TRUE(rollout.residuals(x, residuals, nullptr));
+    ASSERT_TRUE(same(residuals, fresh(problem, x)));
+  }
+}
+
 TEST(Rollout, WideRegistersChangeNoDerivative) {
   if (!has_wide_registers()) {
     GTEST_SKIP() << "this processor has no registers of 512 bits";

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -42,6 +43,34 @@ TEST(Decays, AreFoundWithTheirSizesAndLeaveTheNoise) {
   }
   EXPECT_NEAR(train.left, 400.0 * 0.05 * 0.05, 0.2);
   EXPECT_DOUBLE_EQ(train.penalised, train.left + 4.0 * 0.3 * 0.3);
+}
+
+TEST(Decays, AreTheLeastSquaresOfAllLeapsTogether) {
+  constexpr double pole = 0.8;
+  test::Noise noise(7);
+  Signal values(60);
+  for (double& value : values) {
+    value = noise();
+  }
+  Decays decays(values, pole);
+  const std::vector<std::size_t> leaps{17, 3, 40, 18, 59};  // in no order, two of them neighbours, one at the end
+  for (const std::size_t leap : leaps) {
+    decays.add(leap);
+  }
+  // What least squares leaves is at right angles to each decay that it could have taken more of.
+  const Signal sum = decays.sum();
+  for (const std::size_t leap : leaps) {
+    double product = 0.0;
+    for (std::size_t k = leap; k < values.size(); ++k) {
+      product += (values[k] - sum[k]) * std::pow(pole, static_cast<double>(k - leap));
+    }
+    EXPECT_NEAR(product, 0.0, 1e-12) << leap;
+  }
+  // And the sum is one of such decays: it leaps nowhere else.
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double before = k == 0 ? 0.0 : pole * sum[k - 1];
+    EXPECT_TRUE(std::abs(sum[k] - before) < 1e-12 || std::ranges::count(leaps, k) == 1) << k;
+  }
 }
 
 TEST(Decays, OfSeveralSignalsShareTheirNumber) {

@@ -200,6 +200,14 @@ Value Computer::truncated(const Value& value, Plain type) {
   return whole_of(value.wire, type, false);
 }
 
+/// The lower 32 bits, as a PLC whose TIME has no more of them gives it: what is counted by them goes on for ever.
+Value Computer::whole_milliseconds(const Value& time, Plain type) {
+  const Wire range = builder_.literal(Type::Real, two_to_32);
+  const Wire rounds = apply(Op::ToReal, {apply(Op::ToInt, {apply(Op::Divide, {time.wire, range})})});
+  const Wire rest = apply(Op::Subtract, {time.wire, apply(Op::Multiply, {rounds, range})});
+  return fit(whole_of(rest, Plain::Udint, true), type);
+}
+
 Value Computer::convert(const Value& value, Plain type) {
   const Family from = info(value.type).family;
   const Family to = info(type).family;
@@ -225,7 +233,7 @@ Value Computer::convert(const Value& value, Plain type) {
       number.type = Plain::Time;
       return number;
     }
-    return convert(number, type);
+    return is_integer(type) ? whole_milliseconds(number, type) : convert(number, type);
   }
   if (to == Family::Truth) {
     if (from == Family::Truth) {

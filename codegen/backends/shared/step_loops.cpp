@@ -23,7 +23,9 @@ void StepWriter::prepare_loops() {
   array_of_.assign(routine.step.size(), no_array);
   array_length_.assign(routine.step.size(), 0);
   array_is_begun_.assign(routine.step.size(), false);
-  if (!has_loops()) {
+  const bool has_places = has_arrays(graph.inputs) || has_arrays(graph.outputs) || routine.uses_operation(Op::At) ||
+                          std::ranges::any_of(cell_groups(routine.cells), &PortGroup::is_array);
+  if (!has_loops() || !has_places) {
     return;
   }
   shapes_ = ValueShapes(graph, routine, [this](ValueId id) {

@@ -102,7 +102,6 @@ class StepWriter {
   [[nodiscard]] bool needs_name(ValueId id) const {
     return routine.uses[id] > 1 || (id < must_be_named.size() && must_be_named[id]) || shapes_.is_sum(id);
   }
-  void begin(const Statement& statement, bool reset);
 
   // --- loops ---
 

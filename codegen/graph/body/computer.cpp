@@ -224,8 +224,11 @@ Value Computer::convert(const Value& value, Plain type) {
     }
     report_(
         error::other_meaning_elsewhere, span_,
-        "a TIME as a number is counted in milliseconds here, as in CODESYS, TwinCAT and SIMATIC; MATIEC counts seconds",
-        "Divide times by times, or compare them with literals T#…, where the text shall mean the same everywhere.");
+        fmt::format("{}_TO_{} counts in milliseconds here, as in CODESYS, TwinCAT and SIMATIC; MATIEC counts seconds",
+                    info(value.type).name, info(type).name),
+        to == Family::Duration
+            ? "Write T#1ms * ( … ), which means the same everywhere."
+            : "Compare the time with a literal, T#…, where the text shall mean the same everywhere.");
     Value number = value;  // a number of milliseconds, whichever of the two it is
     number.type = from == Family::Duration ? Plain::Lreal : value.type;
     if (to == Family::Duration) {

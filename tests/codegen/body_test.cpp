@@ -2,6 +2,7 @@
 #include "codegen/graph/body/body.hpp"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -259,7 +260,7 @@ TEST(Bodies, TheCounterOfAForHoldsItsBounds) {
   EXPECT_EQ(faults_of(loop("BYTE", "LIMIT(-1, N, 3) TO 5")), mismatch);
   EXPECT_EQ(faults_of(loop("SINT", "120 TO 128")), mismatch);
   EXPECT_EQ(faults_of(loop("DINT", "32766 TO LIMIT(32766, N, 40000)")), Faults{});
-  EXPECT_EQ(faults_of(loop("SINT", "120 TO 127")), Faults{});
+  EXPECT_EQ(faults_of(loop("SINT", "120 TO 126")), Faults{});
   EXPECT_EQ(faults_of(loop("BYTE", "0 TO LIMIT(0, N, 9) - 1")), Faults{});
 }
 
@@ -299,6 +300,43 @@ TEST(Bodies, AWhileThatItsNumbersEndIsUnrolled) {
   EXPECT_EQ(faults_of(body("WHILE Z > 1.0 DO Z := Z / 2.0; END_WHILE;")), Faults{"129:3"});
   EXPECT_EQ(faults_of(body("WHILE Y <> 0 DO Y := Y - 3; END_WHILE;")), Faults{"129:3"});
   EXPECT_EQ(faults_of(body("REPEAT N := N + 1; UNTIL FALSE END_REPEAT;")), Faults{"129:3"});
+}
+
+/// A counter of other compilers goes on from the other end of its type, where its last round is at this one.
+TEST(Bodies, ACounterThatCannotPassItsLastRoundIsRefused) {
+  const auto faults = [](const std::string& type, const std::string& head) {
+    Diagnostics found;
+    check(std::make_shared<const language::SourceFile>(language::parse(
+              "t",
+              "FUNCTION_BLOCK F VAR_INPUT X : USINT; D : DINT; END_VAR VAR_OUTPUT N : DINT; END_VAR VAR C : " + type +
+                  "; END_VAR\nFOR C := " + head + " DO N := N + 1; END_FOR; END_FUNCTION_BLOCK",
+              found)),
+          found);
+    std::string text;
+    for (const Diagnostic& one : found.all()) {
+      text += fmt::format("HY{} {}. {}", one.number, one.cause, one.mend);
+    }
+    return text;
+  };
+  EXPECT_EQ(
+      faults("USINT", "250 TO 255"),
+      "HY207 'C' is USINT, and does not hold 256, which stands behind the last round: where a USINT ends at 255, a PLC "
+      "goes on from the other end, and this FOR never ends. Count by a DINT, or end it at 254 at the latest.");
+  EXPECT_EQ(
+      faults("USINT", "3 TO 0 BY -1"),
+      "HY207 'C' is USINT, and does not hold -1, which stands behind the last round: where a USINT ends at 0, a PLC "
+      "goes on from the other end, and this FOR never ends. Count by a DINT, or end it at 1 at the lowest.");
+  EXPECT_EQ(
+      faults("DINT", "2147483640 TO 2147483647"),
+      "HY207 'C' is DINT, and does not hold 2147483648, which stands behind the last round: where a DINT ends at "
+      "2147483647, a PLC goes on from the other end, and this FOR never ends. End it at 2147483646 at the latest.");
+  EXPECT_THAT(faults("INT", "32760 TO 32767 BY 5"), ::testing::StartsWith("HY207"));
+  EXPECT_THAT(faults("USINT", "250 TO X"),
+              ::testing::StartsWith("HY217 this FOR may count 'C' to 255: where a USINT ends at 255, a PLC goes on"));
+  for (const char* const head : {"250 TO 254", "3 TO 1 BY -1", "0 TO 251 BY 4", "5 TO 3", "0 TO MIN(X, 254)"}) {
+    EXPECT_EQ(faults("USINT", head), "") << head;
+  }
+  EXPECT_EQ(faults("INT", "0 TO X"), "");
 }
 
 TEST(Bodies, AChoiceOfLiteralsTakesTheTypeItIsAssignedTo) {

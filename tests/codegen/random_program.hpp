@@ -279,7 +279,7 @@ class RandomDiagram {
 
   void write_vectors(std::string& declarations, std::string& statements) {
     for (std::size_t i = 0; i < 1 + pick(3); ++i) {
-      const std::size_t length = 2 + pick(3);
+      const std::size_t length = 2 + pick(longest_vector - 1);
       declarations += fmt::format("    V{} : ARRAY[0..{}] OF LREAL;\n", i, length - 1);
       statements += fmt::format("  V{} := {};\n", i, vector(length));
       offer(fmt::format("V{}", i), length);
@@ -290,9 +290,10 @@ class RandomDiagram {
   }
 
   void write_sized(const std::string& name, std::string& declarations, std::string& statements) {
-    const std::size_t n = 1 + pick(3);
-    const std::size_t m = 1 + pick(3);
-    const std::size_t p = 1 + pick(3);
+    // A loop begins at three elements: sizes below and above it.
+    const std::size_t n = 1 + pick(longest_vector);
+    const std::size_t m = 1 + pick(longest_vector);
+    const std::size_t p = 1 + pick(longest_vector);
     const auto input = [&](std::size_t length) { return length == 1 ? source(Type::Real) : vector(length); };
     const std::string reset = pick(2) == 0 ? fmt::format(", R1 := {}", source(Type::Bool)) : "";
     switch (pick(5)) {
@@ -394,7 +395,8 @@ class RandomDiagram {
   RandomWords words_;
   std::string text_;
   std::array<std::vector<std::string>, 4> sources_;
-  std::array<std::vector<std::string>, 5> vectors_;  ///< by length
+  static constexpr std::size_t longest_vector = 6;
+  std::array<std::vector<std::string>, longest_vector + 1> vectors_;  ///< by length
 };
 
 }  // namespace hysteron::testing

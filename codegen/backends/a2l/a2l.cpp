@@ -95,10 +95,12 @@ class A2lText {
     };
     add_ports(CStructure::In, graph_.inputs);
     add_ports(CStructure::Out, graph_.outputs);
-    for (std::size_t i = 0; i < routine_.cells.size(); ++i) {
-      const CellInfo& cell = routine_.cells[i];
-      entries_.push_back(a2l_row(CStructure::State, offset(CStructure::State, i),
-                                 a2l_path(cell.instance, cell.field.name), cell.field));
+    for (const PortGroup& group : cell_groups(routine_.cells)) {
+      const CellInfo& cell = routine_.cells[group.first];
+      Field field = cell.field;
+      field.length = group.is_array() ? static_cast<std::uint16_t>(group.length) : field.length;
+      entries_.push_back(a2l_row(CStructure::State, offset(CStructure::State, group.first),
+                                 a2l_path(cell.instance, group.name), field));
     }
     std::erase_if(entries_, [&](const A2lRow& one) { return !object(one).there; });
   }

@@ -45,7 +45,6 @@ constexpr SpellingTable batch_operations = c_family_operators.with({
     {Op::ToSingle, call("lanes::single")},
     {Op::ToInt, call("lanes::to_int")},
     {Op::ToReal, call("lanes::to_real")},
-    {Op::At, call("lanes::at")},
 });
 
 }  // namespace
@@ -63,6 +62,7 @@ const DialectOfC batch_dialect{.operations = batch_operations,
                                .not_a_number = "std::numeric_limits<double>::quiet_NaN()",
                                .literal_begin = "lanes::all(",
                                .literal_end = ")",
+                               .read_begin = "lanes::at(",
                                .element_begin = "lanes::store(",
                                .passes_length = false};
 

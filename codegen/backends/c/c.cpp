@@ -111,8 +111,14 @@ class CFiles {
       });
     });
     append_struct(text, "state", "What lives from step to step: one for each instance.", routine_.cells.empty(), [&] {
-      StructLayout::append_grouped(
-          text, names.cells, [&](std::size_t i) { append_member(text, routine_.cells[i].field, names.cells[i]); });
+      const std::vector<std::uint32_t> lengths = declared_lengths(routine_.cells);
+      StructLayout::append_grouped(text, names.cells, [&](std::size_t i) {
+        Field field = routine_.cells[i].field;
+        field.length = static_cast<std::uint16_t>(lengths[i]);
+        if (field.length > 0) {
+          append_member(text, field, {.group = names.cells[i].group, .name = variable_of(names.cells[i].name)});
+        }
+      });
     });
     append_struct(text, "in", "The inputs of a step.", graph_.inputs.empty(),
                   [&] { append_ports(text, graph_.inputs, names.inputs); });

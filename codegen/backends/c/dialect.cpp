@@ -73,6 +73,7 @@ constexpr DialectOfC dialect_with(const SpellingTable& operations, std::string_v
           .not_a_number = real == "float" ? "NAN" : "(double)NAN",
           .word_begin = "(uint16_t)",
           .word_end = "U",
+          .read_begin = "element(",
           .element_begin = "set_element(",
           .passes_length = true,
           .place = "uint32_t",
@@ -232,7 +233,7 @@ std::set<std::string_view> c_helpers_of(const Routine& routine) {
       names.insert(operations_of_double[op].text);
     }
   }
-  if (routine.uses_operation(Op::At)) {
+  if (routine.reads_by_index) {
     names.insert("element");
   }
   for (const auto* list : {&routine.reset, &routine.step}) {

@@ -7,6 +7,7 @@
 #include "codegen/backends/c_family/c_library_names.hpp"
 #include "codegen/backends/c_family/words.hpp"
 #include "codegen/backends/shared/port_groups.hpp"
+#include "support/element_name.hpp"
 
 namespace hysteron {
 
@@ -58,12 +59,13 @@ StructLayout::StructLayout(const Graph& graph, const Routine& routine, std::span
   }
   NameTable taken;
   std::string joined;
-  for (const CellInfo& cell : routine.cells) {
-    Member member{.name = field_name(cell.field.name)};
-    if (cell.instance.empty()) {
+  for (const PortGroup& cells : cell_groups(routine.cells)) {
+    const std::string_view instance = routine.cells[cells.first].instance;
+    Member member{.name = field_name(cells.name)};
+    if (instance.empty()) {
       member.name = members_.make({member.name});
     } else {
-      member.group = group(cell.instance);
+      member.group = group(instance);
     }
     for (;;) {
       joined.assign(member.group).append(".").append(member.name);
@@ -72,7 +74,12 @@ StructLayout::StructLayout(const Graph& graph, const Routine& routine, std::span
       }
       member.name = field_name("last_" + std::string(member.name));
     }
-    layout_.cells.push_back(member);
+    for (std::uint32_t i = 0; i < cells.length; ++i) {
+      layout_.cells.push_back(member);
+      if (cells.is_array()) {
+        layout_.cells.back().name = elements_.emplace_back(element_name(member.name, i));
+      }
+    }
   }
   layout_.inputs.assign(inputs_.begin(), inputs_.end());
   layout_.outputs.assign(outputs_.begin(), outputs_.end());

@@ -1,6 +1,7 @@
 // Names for C and C++: of namespaces and prefixes, of members, of ports; and the layout of a step in structures.
 #pragma once
 
+#include <deque>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,8 +37,9 @@ class StructLayout {
   static void append_grouped(std::string& text, const std::vector<Member>& members, Line line);
 
  private:
-  Identifiers members_;  ///< groups of parameters and state, and what stands there alone
-  NameTable fields_;     ///< members of groups
+  Identifiers members_;               ///< groups of parameters and state, and what stands there alone
+  NameTable fields_;                  ///< members of groups
+  std::deque<std::string> elements_;  ///< of states that are arrays: x[2]
   std::vector<std::string> inputs_;
   std::vector<std::string> outputs_;
   Layout layout_;

@@ -90,18 +90,29 @@ void PrinterOfC::print_leaf(const Value& value, int outer, std::string& out) con
   }
 }
 
+/// A place that is known is written as it stands; one that is computed may lie outside.
+void PrinterOfC::print_element(const Value& value, std::string& out) const {
+  const Value& array = tape()[value.args[0]];
+  const Value& place = tape()[value.args[1]];
+  const std::size_t length =
+      array.op == Op::Cell ? length_of_cell(array.index) : graph_.parameters[array.index].field.length;
+  if (place.op == Op::IntLiteral) {
+    print(value.args[0], out);
+    return append(out, "[", std::to_string(place_within(place.literal, length)), "]");
+  }
+  out += dialect_.read_begin;
+  print(value.args[0], out);
+  out += ", ";
+  if (dialect_.passes_length) {
+    append(out, std::to_string(length), ", ");
+  }
+  print(value.args[1], out);
+  out += ')';
+}
+
 void PrinterOfC::print_special(const Value& value, int outer, std::string& out) const {
   if (value.op == Op::At) {
-    const Value& array = tape()[value.args[0]];
-    out += "element(";
-    print(value.args[0], out);
-    append(out, ", ",
-           std::to_string(array.op == Op::Cell ? length_of_cell(array.index)
-                                               : graph_.parameters[array.index].field.length),
-           ", ");
-    print(value.args[1], out);
-    out += ')';
-    return;
+    return print_element(value, out);
   }
   out += outer > Strength::Loosest ? "(" : "";
   const int side = dialect_.careful ? Strength::Primary : Strength::LogicalOr;
@@ -151,8 +162,31 @@ void WriterOfC::begin_rate(const Rate& rate, std::string& text) {
                            rate.phase));
 }
 
-void WriterOfC::begin_loop(std::uint32_t count, std::string& text) {
-  append(text, fmt::format("for ({0} {1} = 0U; {1} < {2}U; ++{1}) {{\n", dialect_.place, place_, count));
+LoopWords WriterOfC::loop_words() {
+  return {.places = {.row = locals_.make({"i"}),
+                     .column = locals_.make({"k"}),
+                     .number_end = dialect_.careful ? "U" : "",
+                     .brackets = dialect_.careful},
+          .sum = locals_.make({"sum"}),
+          .assign = " = "};
+}
+
+void WriterOfC::begin_loop(std::string_view place, std::size_t first, std::size_t end, std::string& text) {
+  append(text, fmt::format("for ({0} {1} = {2}U; {1} < {3}U; ++{1}) {{\n", dialect_.place, place, first, end));
+}
+
+void WriterOfC::declare_array(std::string_view name, Type type, std::size_t length, std::string& text) {
+  append(text, indentation, type_of(dialect_, type), fmt::format(" {}[{}];\n", name, length));
+}
+
+void WriterOfC::begin_variable(std::string_view name, bool is_known, std::string& text) {
+  append(text, is_known ? "" : dialect_.real, is_known ? "" : " ", name);
+}
+
+void WriterOfC::set_local(std::string_view element, ValueId value, std::string& text) {
+  append(text, element, " = ");
+  expressions.print(value, text);
+  text += ";\n";
 }
 
 void WriterOfC::define(ValueId id, std::string_view name, std::string& text) {

@@ -15,12 +15,13 @@ struct DialectOfC {
   std::string_view real{}, truth{}, integer{}, word{};        ///< types
   std::string_view parameters{}, state{}, input{}, output{};  ///< what stands before a member: params.
   std::string_view infinity{}, not_a_number{};
-  std::string_view word_begin{}, word_end{};  ///< round the digits of a word
+  std::string_view word_begin{}, word_end{};        ///< round the digits of a word
   std::string_view literal_begin{}, literal_end{};  ///< round every literal
-  std::string_view element_begin{};           ///< the call that sets an element of an array
-  bool passes_length = false;                 ///< whether the calls for elements take the length of the array
-  std::string_view place{};                   ///< the type of a place in an array, in loops; empty: there are none
-  bool careful = false;  ///< x == x is written as !isnan(x), and operators of two kinds stand in brackets
+  std::string_view read_begin{};                    ///< the call that reads an element of an array at a computed place
+  std::string_view element_begin{};                 ///< the call that sets one
+  bool passes_length = false;                       ///< whether the calls for elements take the length of the array
+  std::string_view place{};  ///< the type of a place in an array, in loops; empty: there are none
+  bool careful = false;      ///< x == x is written as !isnan(x), and operators of two kinds stand in brackets
 };
 
 std::string_view type_of(const DialectOfC& dialect, Type type);
@@ -50,6 +51,7 @@ class PrinterOfC final : public ExpressionPrinter {
  private:
   void print_leaf(const Value& value, int outer, std::string& out) const override;
   void print_special(const Value& value, int outer, std::string& out) const override;
+  void print_element(const Value& value, std::string& out) const;
   bool print_equal_sides(const Value& value, const std::string& side, std::string& out) const override;
   static void print_member(std::string_view object, const Member& member, std::string& out);
 
@@ -68,7 +70,7 @@ class WriterOfC : public StepWriter {
         printer_(printer),
         layout_(layout),
         dialect_(dialect),
-        place_(dialect.place.empty() || !has_arrays(the_graph.outputs) ? std::string_view() : locals.make({"i"})) {}
+        locals_(locals) {}
 
   /// The end of a step: the counter of steps goes on, within the longest period.
   void write_counter(std::string& text) const;
@@ -82,9 +84,13 @@ class WriterOfC : public StepWriter {
   void set_cell(std::uint32_t cell, ValueId value, std::string& text) override;
   void set_element(std::uint32_t cell, ValueId index, ValueId value, std::string& text) override;
 
-  [[nodiscard]] std::string_view place_name() const override { return place_; }
-  void begin_loop(std::uint32_t count, std::string& text) override;
+  [[nodiscard]] bool has_loops() const override { return !dialect_.place.empty(); }
+  [[nodiscard]] LoopWords loop_words() override;
+  void begin_loop(std::string_view place, std::size_t first, std::size_t end, std::string& text) override;
   void end_loop(std::string& text) override { text += "}\n"; }
+  void declare_array(std::string_view name, Type type, std::size_t length, std::string& text) override;
+  void begin_variable(std::string_view name, bool is_known, std::string& text) override;
+  void set_local(std::string_view element, ValueId value, std::string& text) override;
 
   const PrinterOfC& printer() const { return printer_; }
   const Layout& layout() const { return layout_; }
@@ -93,7 +99,7 @@ class WriterOfC : public StepWriter {
   PrinterOfC& printer_;
   const Layout& layout_;
   const DialectOfC& dialect_;
-  std::string_view place_;
+  Identifiers& locals_;
 };
 
 /// Whether a list of statements reads or sets the state.

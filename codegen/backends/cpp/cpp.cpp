@@ -73,7 +73,9 @@ class CppHeader {
            ";\n\nconstexpr Real sample_time = ", printer_.literal(Type::Real, graph_.sample_time()), ";  // s\n\n");
     append_structs(text);
     const bool stores = sets_elements(routine_.reset) || sets_elements(routine_.step);
-    append(text, cpp_helper_functions(routine_.used_by_reset | routine_.used_by_step, stores));
+    Operations called = routine_.used_by_reset | routine_.used_by_step;
+    called.set(static_cast<std::size_t>(Op::At), routine_.reads_by_index);
+    append(text, cpp_helper_functions(called, stores));
     return text;
   }
 
@@ -96,7 +98,7 @@ class CppHeader {
   std::string includes() const {
     std::string text;
     const bool arrays =
-        std::ranges::any_of(routine_.cells, [](const CellInfo& cell) { return cell.field.length > 1; }) ||
+        std::ranges::any_of(declared_lengths(routine_.cells), [](std::uint32_t length) { return length > 1; }) ||
         std::ranges::any_of(graph_.parameters, [](const Parameter& one) { return one.field.length > 1; }) ||
         has_arrays(graph_.inputs) || has_arrays(graph_.outputs);
     if (arrays) {

@@ -33,7 +33,8 @@ struct CppStructs {
       append_member(text, type_of(dialect, one.field.type), one.field, names.parameters[i], &one.value);
     });
     append(text, "};\n\nstruct State {\n");
-    StructLayout::append_grouped(text, names.cells, [&](std::size_t i) { append_cell(text, i); });
+    const std::vector<std::uint32_t> lengths = declared_lengths(routine.cells);
+    StructLayout::append_grouped(text, names.cells, [&](std::size_t i) { append_cell(text, i, lengths[i]); });
     append(text, "};\n\n");
     append_ports(text, "In", graph.inputs, names.inputs);
     append_ports(text, "Out", graph.outputs, names.outputs);
@@ -41,11 +42,16 @@ struct CppStructs {
 
  private:
   /// Without a value: reset gives it. The counter of steps is one number, whatever an integer of the dialect is.
-  void append_cell(std::string& text, std::size_t i) const {
+  void append_cell(std::string& text, std::size_t i, std::uint32_t length) const {
+    if (length == 0) {
+      return;
+    }
     Field field = routine.cells[i].field;
+    field.length = static_cast<std::uint16_t>(length);
     const bool is_counter = routine.longest_period > 1 && i == routine.counter;
     field.meaning = is_counter && !counter_meaning.empty() ? counter_meaning : field.meaning;
-    append_member(text, is_counter ? "std::int32_t" : type_of(dialect, field.type), field, names.cells[i], nullptr);
+    append_member(text, is_counter ? "std::int32_t" : type_of(dialect, field.type), field,
+                  {.group = names.cells[i].group, .name = variable_of(names.cells[i].name)}, nullptr);
   }
 
   void append_member(std::string& text, std::string_view type, const Field& field, const Member& member,

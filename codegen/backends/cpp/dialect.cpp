@@ -37,7 +37,6 @@ constexpr SpellingTable cpp_operations = c_family_operators.with({
     {Op::ToSingle, call("detail::single")},
     {Op::ToInt, call("detail::to_int")},
     {Op::ToReal, call("static_cast<Real>")},
-    {Op::At, call("detail::at")},
 });
 
 }  // namespace
@@ -55,6 +54,7 @@ const DialectOfC cpp_dialect{.operations = cpp_operations,
                              .not_a_number = "std::numeric_limits<Real>::quiet_NaN()",
                              .word_begin = "std::uint16_t{",
                              .word_end = "}",
+                             .read_begin = "detail::at(",
                              .element_begin = "detail::store(",
                              .passes_length = false,
                              .place = "std::uint32_t"};

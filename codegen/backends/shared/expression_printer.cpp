@@ -53,6 +53,13 @@ void ExpressionPrinter::print_arguments(const Value& value, std::string& out) co
   out += ')';
 }
 
+void ExpressionPrinter::print_added(ValueId id, std::string& out) const {
+  const Op inner = tape_[id].op;
+  const bool mixed = brackets_mixed_operators && !is_named(id) && !is_leaf(inner) &&
+                     table_[inner].form == Spelling::Form::Infix && table_[inner].text != table_[Op::Add].text;
+  print(id, mixed ? Strength::Primary : Strength::Additive + 1, out);
+}
+
 void ExpressionPrinter::print(ValueId id, int outer, std::string& out) const {
   if (is_named(id)) {
     return print_name(names_[name_of_[id] - 1], out);

@@ -2,6 +2,7 @@
 // operation as a row of a table, and spells by itself its leaves and what has a form of its own.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -86,6 +87,11 @@ constexpr Spelling negation(std::string_view text) {
   return {text, Spelling::Form::Not, Strength::Prefix};
 }
 
+/// A literal place in an array of a length: one that lies outside is the nearest end.
+[[nodiscard]] inline std::size_t place_within(double place, std::size_t length) {
+  return static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(length - 1)));
+}
+
 /// Prints the values of a tape. A value that has a name is its name.
 class ExpressionPrinter {
  public:
@@ -100,11 +106,18 @@ class ExpressionPrinter {
     name_of_[id] = static_cast<std::uint32_t>(names_.size());
   }
   [[nodiscard]] bool is_named(ValueId id) const { return name_of_[id] != 0; }
+  /// A value is written out again.
+  void unname(ValueId id) { name_of_[id] = 0; }
+  /// What a value is called, for `call_again`: 0 where it has no name.
+  [[nodiscard]] std::uint32_t called(ValueId id) const { return name_of_[id]; }
+  void call_again(ValueId id, std::uint32_t called) { name_of_[id] = called; }
   [[nodiscard]] const Tape& tape() const { return tape_; }
 
   /// Appends a value's text, with brackets where it binds less strongly than `outer`.
   void print(ValueId id, int outer, std::string& out) const;
   void print(ValueId id, std::string& out) const { print(id, Strength::Loosest, out); }
+  /// Appends what is added: the right side of a +.
+  void print_added(ValueId id, std::string& out) const;
 
  protected:
   /// A value that has a name.

@@ -1,29 +1,37 @@
-// Ports as a caller sees them: a vector of the diagram is one array, everything else a variable of its own.
+// Ports and states as a caller sees them: a vector is one array, everything else a variable of its own.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "codegen/backends/shared/routine.hpp"
 #include "codegen/graph/graph.hpp"
 
 namespace hysteron {
 
-/// A single port, or the elements of a vector from 0 on, which stand behind each other.
+/// A single port or state, or the elements of a vector from 0 on, which stand behind each other.
 struct PortGroup {
-  std::string_view name{};   ///< of the port, or of the vector without an index
-  std::uint32_t first = 0;   ///< its place in the list of ports
-  std::uint32_t length = 1;  ///< 1: a single port
+  std::string_view name{};   ///< its own, or that of the vector without an index
+  std::uint32_t first = 0;   ///< its place in the list
+  std::uint32_t length = 1;  ///< 1: a single one
   [[nodiscard]] bool is_array() const { return length > 1; }
 };
 
 /// In the order of the ports. A vector of one element is a single port.
 [[nodiscard]] std::vector<PortGroup> port_groups(const std::vector<Port>& ports);
 
+/// The same for what lives from step to step.
+[[nodiscard]] std::vector<PortGroup> cell_groups(std::span<const CellInfo> cells);
+
+/// By cell the length of the variable that it is declared as: of a vector at its first element, and 0 at the others.
+[[nodiscard]] std::vector<std::uint32_t> declared_lengths(std::span<const CellInfo> cells);
+
 [[nodiscard]] bool has_arrays(const std::vector<Port>& ports);
 
-/// By port what it is called: of an array the elements, `x[2]`. `make` gives the name of a group.
+/// By port or state what it is called: of an array the elements, `x[2]`. `make` gives the name of a group.
 template <class Make>
 [[nodiscard]] std::vector<std::string> port_names(const std::vector<PortGroup>& groups, Make make) {
   std::vector<std::string> names;

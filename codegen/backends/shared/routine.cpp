@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "support/element_name.hpp"
+
 namespace hysteron {
 namespace {
 
@@ -261,21 +263,31 @@ class RoutineBuilder {
                       .value = lay(index, store.value, laid),
                       .index = store.index == no_value ? no_value : lay(index, store.index, laid)});
     }
-    // A value that reads a cell which is set before it gets a name first.
+    // A value that reads a cell which is set before it gets a name first, and with it those of the same vector.
+    std::vector<bool> named(sets.size(), false);
     for (std::size_t later = 1; later < sets.size(); ++later) {
       bool reads_changed = false;
-      for (std::size_t earlier = 0; earlier < later; ++earlier) {
+      for (std::size_t earlier = 0; earlier < later && !named[later]; ++earlier) {
         reads_changed = reads_changed || reads_cell(sets[later].value, sets[earlier].target) ||
                         (sets[later].index != no_value && reads_cell(sets[later].index, sets[earlier].target));
       }
-      if (reads_changed) {
-        name_first(index, sets[later].value, sets[later].target, "next");
-        if (sets[later].index != no_value) {
-          name_first(index, sets[later].index, sets[later].target, "place");
+      for (std::size_t i = 0; i < sets.size() && reads_changed; ++i) {
+        if (!named[i] && (i == later || in_one_vector(sets[i], sets[later]))) {
+          named[i] = true;
+          name_first(index, sets[i].value, sets[i].target, "next");
+          if (sets[i].index != no_value) {
+            name_first(index, sets[i].index, sets[i].target, "place");
+          }
         }
       }
     }
     routine_.step.insert(routine_.step.end(), sets.begin(), sets.end());
+  }
+
+  [[nodiscard]] bool in_one_vector(const Statement& a, const Statement& b) const {
+    const auto one = element_of(routine_.cells[a.target].field.name);
+    const auto other = element_of(routine_.cells[b.target].field.name);
+    return one && other && one->vector == other->vector;
   }
 
   [[nodiscard]] bool defined(ValueId id) const { return id < defined_.size() && defined_[id]; }

@@ -67,6 +67,7 @@ struct Routine {
   Operations used_by_reset{};
   Operations used_by_step{};
   bool infinite_literals = false;  ///< infinite, or not a number
+  bool reads_by_index = false;     ///< an element of an array is read at a place that is computed
   std::size_t operations = 0;      ///< arithmetic operations a step
   std::size_t function_calls = 0;  ///< of them exp, log, power, …
 

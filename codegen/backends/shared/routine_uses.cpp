@@ -43,6 +43,8 @@ void count_operations(Routine& routine, ValueId first_of_step) {
     const bool of_step = id >= first_of_step;
     (of_step ? routine.used_by_step : routine.used_by_reset).set(static_cast<std::size_t>(value.op));
     routine.infinite_literals = routine.infinite_literals || !std::isfinite(value.literal);
+    routine.reads_by_index =
+        routine.reads_by_index || (value.op == Op::At && routine.tape[value.args[1]].op != Op::IntLiteral);
     if (of_step && !is_leaf(value.op)) {
       ++routine.operations;
       routine.function_calls += value.op >= Op::Exp && value.op <= Op::Power ? 1 : 0;

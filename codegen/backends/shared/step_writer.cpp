@@ -5,46 +5,10 @@
 #include "codegen/backends/shared/generated_file.hpp"
 
 namespace hysteron {
-namespace {
-
-constexpr std::size_t shortest_loop = 3;
-
-/// Lines as one, in which a name stands for the place of an element, [0] in the first line and [2] in the third; empty
-/// where they differ in more.
-std::string rolled(const std::vector<std::string>& lines, std::string_view place) {
-  std::string line;
-  std::vector<std::size_t> at(lines.size(), 0);
-  const auto all = [&](auto expected) {
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      if (!std::string_view(lines[i]).substr(at[i]).starts_with(expected(i))) {
-        return false;
-      }
-    }
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      at[i] += std::string_view(expected(i)).size();
-    }
-    return true;
-  };
-  while (at[0] < lines[0].size()) {
-    if (all([](std::size_t i) { return "[" + std::to_string(i) + "]"; })) {
-      append(line, "[", place, "]");
-    } else if (const std::string one(1, lines[0][at[0]]); all([&](std::size_t) { return one; })) {
-      line += one;
-    } else {
-      return {};
-    }
-  }
-  const bool whole = std::ranges::equal(lines, at, {}, &std::string::size) && std::ranges::count(line, '\n') == 1;
-  return whole ? line : std::string();
-}
-
-}  // namespace
 
 StepWriter::StepWriter(const Graph& the_graph, const Routine& the_routine, ExpressionPrinter& the_expressions,
                        Identifiers& locals)
     : graph(the_graph), routine(the_routine), expressions(the_expressions), locals_(locals) {
-  arrays_ = port_groups(graph.outputs);
-  std::erase_if(arrays_, [](const PortGroup& one) { return !one.is_array(); });
   own_definition_.assign(routine.tape.size(), no_value);
   for (std::uint32_t i = 0; i < routine.step.size(); ++i) {
     const Statement& one = routine.step[i];
@@ -54,37 +18,22 @@ StepWriter::StepWriter(const Graph& the_graph, const Routine& the_routine, Expre
   }
 }
 
-void StepWriter::write(const std::vector<Statement>& list, std::string& text) {
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const auto array = std::ranges::find_if(arrays_, [&](const PortGroup& one) {
-      return list[i].kind == Statement::Kind::SetOutput && list[i].target == one.first && i + one.length <= list.size();
-    });
-    if (array == arrays_.end()) {
-      write(list[i], text);
+void StepWriter::write_list(const std::vector<Statement>& list, bool reset, std::string& text) {
+  prepare_loops();
+  in_reset_ = reset;
+  for (std::size_t i = 0; i < list.size();) {
+    if (reset) {
+      section_ = list[i].kind == Statement::Kind::Call ? list[i].target : routine.cells[list[i].target].node;
+    }
+    const std::size_t rows = loops_ ? rows_from(std::span(list).subspan(i)) : 1;
+    if (rows >= shortest_loop) {
+      write_group(std::span(list).subspan(i, rows), text);
+      i += rows;
     } else {
-      write_array(list, *array, i, text);
-      i += array->length - 1;
+      write(list[i++], text);
     }
   }
-}
-
-/// The elements of an output, whose statements follow each other.
-void StepWriter::write_array(const std::vector<Statement>& list, const PortGroup& group, std::size_t at,
-                             std::string& text) {
-  std::vector<std::string> lines(group.length);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    write(list[at + i], lines[i]);
-  }
-  const bool may_loop = lines.size() >= shortest_loop && !place_name().empty();
-  const std::string line = may_loop ? rolled(lines, place_name()) : std::string();
-  if (line.empty()) {
-    std::ranges::for_each(lines, [&](const std::string& one) { text += one; });
-    return;
-  }
-  text += indentation;
-  begin_loop(group.length, text);
-  append(text, "  ", line, indentation);
-  end_loop(text);
+  in_reset_ = false;
 }
 
 void StepWriter::write(const Statement& statement, std::string& text) {
@@ -140,17 +89,27 @@ void StepWriter::write(const Statement& statement, std::string& text) {
 }
 
 /// The first line of a block stands behind its name.
-void StepWriter::begin_line(std::string& text) {
+void StepWriter::begin_section(std::string& text) {
   if (section_begins_) {
     heading(graph.nodes[section_], text);
     section_begins_ = false;
   }
+}
+
+void StepWriter::begin_line(std::string& text) {
+  begin_section(text);
   text += indentation;
 }
 
 void StepWriter::write_definition(ValueId id, std::string_view name, std::string& text) {
-  begin_line(text);
-  define(id, name, text);
+  const std::vector<TermRun> runs = shapes_.is_sum(id) && loops_ ? runs_of(terms_of(id)) : std::vector<TermRun>();
+  if (std::ranges::any_of(runs, [](const TermRun& run) { return run.count > 1; })) {
+    begin_section(text);
+    write_sum(name, is_output(id), runs, {}, text);
+  } else {
+    begin_line(text);
+    define(id, name, text);
+  }
   expressions.name(id, name);
 }
 
@@ -181,13 +140,19 @@ void StepWriter::write_shared(ValueId root, bool with_root, std::string& text) {
     }
     if (entered) {
       const std::uint32_t own = own_definition_[id];
-      if ((needs_name(id) || own != no_value) && (with_root || id != root)) {
+      const bool wanted = (with_root || id != root) && !held_back_[id];
+      if (wanted && own != no_value && array_of_[own] != no_array && !array_is_begun_[array_of_[own]]) {
+        write_array(array_of_[own], text);
+      } else if (wanted && (needs_name(id) || own != no_value)) {
         write_definition(id,
                          own != no_value ? name_of(routine.step[own])
                                          : locals_.make({graph.nodes[section_].owner(), word_for(value)}),
                          text);
       }
       continue;
+    }
+    if (loops_ && shapes_.is_sum(id)) {
+      write_operands_of(id, text);
     }
     stack.push_back({id, true});
     for (std::size_t i = value.args.size(); i-- > 0;) {

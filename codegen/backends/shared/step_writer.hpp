@@ -2,20 +2,34 @@
 // spells the single lines.
 //
 // A value that is used once is written where it is used. A value that is used more often, and one that a target cannot
-// write inside an expression, gets a name before its first use.
+// write inside an expression, gets a name before its first use. The elements of a vector are one array, and what their
+// lines have in common is a loop (step_loops.cpp).
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "codegen/backends/shared/expression_printer.hpp"
 #include "codegen/backends/shared/identifiers.hpp"
+#include "codegen/backends/shared/place_pattern.hpp"
 #include "codegen/backends/shared/port_groups.hpp"
 #include "codegen/backends/shared/routine.hpp"
+#include "codegen/backends/shared/value_shapes.hpp"
 
 namespace hysteron {
+
+/// How a target writes loops.
+struct LoopWords {
+  PlaceWords places{};        ///< the variables that count rows, and terms of a sum
+  std::string_view sum{};     ///< the variable of a sum within a loop
+  std::string_view assign{};  ///< between a variable and its value
+};
 
 class StepWriter {
  public:
@@ -25,17 +39,10 @@ class StepWriter {
   StepWriter(const StepWriter&) = delete;
   StepWriter& operator=(const StepWriter&) = delete;
 
-  /// Elements of an output that are set by lines which differ in their place alone are set in a loop.
-  void write(const std::vector<Statement>& list, std::string& text);
+  /// Statements in their order. Rows that differ in the places of arrays alone are a loop.
+  void write(const std::vector<Statement>& list, std::string& text) { write_list(list, false, text); }
   /// The reset: values take their names from the block whose state they set.
-  void write_reset(std::string& text) {
-    in_reset_ = true;
-    for (const Statement& statement : routine.reset) {
-      section_ = statement.kind == Statement::Kind::Call ? statement.target : routine.cells[statement.target].node;
-      write(statement, text);
-    }
-    in_reset_ = false;
-  }
+  void write_reset(std::string& text) { write_list(routine.reset, true, text); }
 
  protected:
   // What a target spells. Each of the last five writes what follows the indentation of a line.
@@ -51,10 +58,20 @@ class StepWriter {
   virtual void call(const Statement& /*statement*/, bool /*reset*/, std::string& /*text*/) {}
   /// The variable of an output, for values that are one.
   [[nodiscard]] virtual std::string_view output_name(std::uint32_t /*output*/) const { return {}; }
-  /// A loop over the places of an array, round a line that names its place; nothing where the target has none.
-  [[nodiscard]] virtual std::string_view place_name() const { return {}; }
-  virtual void begin_loop(std::uint32_t /*count*/, std::string& /*text*/) {}
+  [[nodiscard]] virtual bool has_loops() const { return false; }
+  /// Asked for once, where there is something to loop over.
+  [[nodiscard]] virtual LoopWords loop_words() { return {}; }
+  /// From place `first` to place `end` - 1.
+  virtual void begin_loop(std::string_view /*place*/, std::size_t /*first*/, std::size_t /*end*/,
+                          std::string& /*text*/) {}
   virtual void end_loop(std::string& /*text*/) {}
+  /// The line that declares a local array, with its indentation; nothing where declarations stand elsewhere.
+  virtual void declare_array(std::string_view /*name*/, Type /*type*/, std::size_t /*length*/, std::string& /*text*/) {}
+  /// A variable of type LREAL whose value changes, as its first assignment writes it; `is_known`: it is declared.
+  virtual void begin_variable(std::string_view /*name*/, bool /*is_known*/, std::string& /*text*/) {}
+  virtual void print_variable(std::string_view name, std::string& text) const { text += name; }
+  /// An element of a local array gets its value.
+  virtual void set_local(std::string_view /*element*/, ValueId /*value*/, std::string& /*text*/) {}
   /// What a shared value is called that is no port and no state.
   [[nodiscard]] virtual std::string_view word_for(const Value& value) const = 0;
 
@@ -76,22 +93,87 @@ class StepWriter {
   std::string_view outer_indentation = "  ";  ///< outside of a rate
 
  private:
+  void write_list(const std::vector<Statement>& list, bool reset, std::string& text);
   void write(const Statement& statement, std::string& text);
-  void write_array(const std::vector<Statement>& list, const PortGroup& group, std::size_t at, std::string& text);
+  void begin_section(std::string& text);
   void begin_line(std::string& text);
   void write_definition(ValueId id, std::string_view name, std::string& text);
   void write_shared(ValueId root, bool with_root, std::string& text);
   [[nodiscard]] bool needs_name(ValueId id) const {
-    return routine.uses[id] > 1 || (id < must_be_named.size() && must_be_named[id]);
+    return routine.uses[id] > 1 || (id < must_be_named.size() && must_be_named[id]) || shapes_.is_sum(id);
   }
+
+  // --- loops ---
+
+  /// A line that sets a variable to a value, and what becomes of it.
+  struct Row {
+    ValueId value = no_value;
+    ValueId sum = no_value;  ///< a long sum within the value
+    const Statement* statement = nullptr;
+    std::string_view element{};  ///< of a local array; empty: what the statement sets
+  };
+  /// A row as text. Of its sum, the terms; its line names the sum's variable.
+  struct RowText {
+    std::string line{};
+    std::vector<std::string> terms{};
+  };
+  /// Terms that follow each other and differ in their places alone; or a single one.
+  struct TermRun {
+    PlacePattern pattern;
+    std::size_t first = 0;
+    std::size_t count = 1;
+  };
+  /// Rows as a loop.
+  struct RowLoop {
+    PlacePattern line;
+    std::vector<TermRun> terms{};
+    std::uint32_t count = 0;
+  };
+  void prepare_loops();
+  void find_arrays();
+  [[nodiscard]] bool are_independent(std::span<const ValueId> values, std::uint32_t node) const;
+  [[nodiscard]] std::size_t rows_from(std::span<const Statement> list) const;
+  void write_group(std::span<const Statement> list, std::string& text);
+  void write_array(std::size_t first_statement, std::string& text);
+  void write_elements(std::span<const ValueId> values, std::string_view name, std::string& text);
+  void write_rows(std::vector<Row>& rows, std::string& text);
+  [[nodiscard]] ValueId sum_within(ValueId root, bool whole) const;
+  /// By operand of the terms of a sum that are alike: calls `use(operands)`.
+  template <class Use>
+  void for_operands(ValueId sum, Use use) const;
+  void write_operands_of(ValueId sum, std::string& text);
+  void write_operands(std::span<const ValueId> values, std::string& text);
+  void gather_operands(std::span<const ValueId> values, std::vector<std::pair<ValueId, std::uint32_t>>& called,
+                       std::string& text);
+  void write_row(const Row& row, std::string& text);
+  void write_line(const Row& row, std::string& text);
+  [[nodiscard]] RowText text_of(const Row& row);
+  [[nodiscard]] static std::vector<TermRun> runs_of(const std::vector<std::string>& terms);
+  [[nodiscard]] static RowLoop loop_from(std::span<const RowText> rows);
+  void write_loop(const RowLoop& loop, std::string& text);
+  void write_sum(std::string_view name, bool is_known, const std::vector<TermRun>& runs, std::string_view row,
+                 std::string& text);
+  [[nodiscard]] std::vector<std::string> terms_of(ValueId sum) const;
+  [[nodiscard]] std::vector<std::string_view> declare_elements(std::string_view name, Type type, std::size_t count,
+                                                               std::string& text);
+
   std::string_view name_of(const Statement& definition);
 
   Identifiers& locals_;
-  std::vector<PortGroup> arrays_;              ///< of the outputs
   std::vector<std::uint32_t> own_definition_;  ///< by value: where the step defines it by the name of a port or state
   std::uint32_t section_ = 0;                  ///< the node to which the statement at hand belongs
   bool section_begins_ = false;
   bool in_reset_ = false;
+
+  bool loops_are_prepared_ = false;
+  std::optional<LoopWords> loops_;
+  ValueShapes shapes_;
+  static constexpr std::uint32_t no_array = no_value;
+  std::vector<std::uint32_t> array_of_;      ///< by statement of the step: the definition at which its array begins
+  std::vector<std::uint32_t> array_length_;  ///< by statement of the step: 0 but where an array begins
+  std::vector<bool> array_is_begun_;         ///< by statement of the step
+  std::vector<bool> held_back_;              ///< by value: the sum of a row, which is written with its row
+  std::deque<std::string> texts_;            ///< names of elements, and indentations
 };
 
 }  // namespace hysteron

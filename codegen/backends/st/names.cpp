@@ -57,9 +57,13 @@ StBlockNames::StBlockNames(const Graph& graph, const Routine& routine, const StD
   if (calls != nullptr) {
     name_instances(graph, *calls);
   }
-  for (std::size_t i = layout_.cells.size(); i < routine.cells.size(); ++i) {
-    const CellInfo& cell = routine.cells[i];
-    layout_.cells.push_back({.name = identifiers_.make({cell.instance, cell.field.name})});
+  for (const PortGroup& cells : cell_groups(std::span(routine.cells).subspan(layout_.cells.size()))) {
+    const std::string_view instance = routine.cells[layout_.cells.size()].instance;
+    const std::string_view name = identifiers_.make({instance, cells.name});
+    for (std::uint32_t i = 0; i < cells.length; ++i) {
+      layout_.cells.push_back(
+          {.name = cells.is_array() ? std::string_view(elements_.emplace_back(element_name(name, i))) : name});
+    }
   }
 }
 
@@ -115,7 +119,7 @@ void refuse_long_names(const Graph& graph, const Routine& routine, const Layout&
     check(layout.parameters[i].name, graph.place(graph.parameters[i].span));
   }
   for (std::size_t i = 0; i < routine.cells.size(); ++i) {
-    check(layout.cells[i].name, graph.place(graph.nodes[routine.cells[i].node].span));
+    check(variable_of(layout.cells[i].name), graph.place(graph.nodes[routine.cells[i].node].span));
   }
   if (diagnostics.has_errors()) {
     throw InputError(std::move(diagnostics));

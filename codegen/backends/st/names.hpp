@@ -50,6 +50,7 @@ class StBlockNames {
   std::vector<std::string> inputs_;
   std::vector<std::string> outputs_;
   std::deque<std::string> outputs_of_instances_;  ///< LAG.XOUT
+  std::deque<std::string> elements_;              ///< of states that are arrays: X[2]
   std::string renamed_;
 };
 

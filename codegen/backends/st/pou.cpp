@@ -282,9 +282,14 @@ class StBlock {
 
   [[nodiscard]] std::vector<StVariable> memory() const {
     std::vector<StVariable> list;
-    for (std::size_t i = calls_ != nullptr ? calls_->made.output_cells : 0; i < routine_.cells.size(); ++i) {
-      const Field& field = routine_.cells[i].field;
-      list.push_back(of_field(names_.layout().cells[i].name, field, std::string(field.meaning)));
+    const std::size_t first = calls_ != nullptr ? calls_->made.output_cells : 0;
+    const std::vector<std::uint32_t> lengths = declared_lengths(std::span(routine_.cells).subspan(first));
+    for (std::size_t i = first; i < routine_.cells.size(); ++i) {
+      Field field = routine_.cells[i].field;
+      field.length = static_cast<std::uint16_t>(lengths[i - first]);
+      if (field.length > 0) {
+        list.push_back(of_field(variable_of(names_.layout().cells[i].name), field, std::string(field.meaning)));
+      }
     }
     list.push_back(
         {.name = std::string(names_.started()), .type = "BOOL", .values = {"FALSE"}, .remark = "a step has run"});
@@ -297,10 +302,13 @@ class StBlock {
   [[nodiscard]] std::vector<StVariable> locals() const {
     std::vector<StVariable> list;
     for (const StLocal& local : writer_.locals) {
-      list.push_back({.name = std::string(local.name), .type = type(local.type)});
+      list.push_back({.name = std::string(local.name), .type = type(local.type), .length = local.length});
     }
     if (writer_.uses_place) {
       list.push_back({.name = std::string(names_.own().place), .type = "DINT", .remark = "place in an array"});
+    }
+    if (writer_.uses_term) {
+      list.push_back({.name = std::string(writer_.term_name), .type = "DINT", .remark = "term of a sum"});
     }
     return list;
   }
@@ -408,8 +416,8 @@ void append_names(std::string& text, const std::vector<StVariable>& variables) {
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const StVariable& one = variables[i];
     append(line, line.empty() ? "" : ", ", one.name);
-    const bool last = i + 1 == variables.size() || variables[i + 1].type != one.type || !one.remark.empty() ||
-                      !variables[i + 1].remark.empty();
+    const bool last = i + 1 == variables.size() || variables[i + 1].type != one.type ||
+                      variables[i + 1].length != one.length || !one.remark.empty() || !variables[i + 1].remark.empty();
     if (last || line.size() + variables[i + 1].name.size() > widest_line) {
       append_declaration(text, line, one);
       line.clear();

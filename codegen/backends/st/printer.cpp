@@ -180,7 +180,7 @@ void StPrinter::print_place(ValueId index, std::uint16_t length, std::string& ou
   out += '[';
   const Value& place = tape()[index];
   if (place.op == Op::IntLiteral) {
-    out += std::to_string(std::clamp(static_cast<int>(place.literal), 0, length - 1));
+    out += std::to_string(place_within(place.literal, length));
   } else {
     print_call("LIMIT", {"MN", "IN", "MX"}, {"DINT#0", text(index), fmt::format("DINT#{}", length - 1)}, out);
   }

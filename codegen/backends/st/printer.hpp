@@ -21,10 +21,11 @@ struct StNames {
   std::string_view place{};    ///< of an element, in loops
 };
 
-/// A local variable, of a value that has a name.
+/// A local variable, of a value that has a name, or of those of a vector.
 struct StLocal {
   std::string_view name{};
   Type type = Type::Real;
+  std::uint32_t length = 1;
 };
 
 std::string_view st_type(Type type, bool float32);
@@ -115,6 +116,8 @@ class StWriter final : public StepWriter {
   /// Of the values that the text names, in the order of their coming.
   std::vector<StLocal> locals{};
   bool uses_place = false;
+  bool uses_term = false;
+  std::string_view term_name{};  ///< what counts the terms of a sum
 
  protected:
   void heading(const Node& node, std::string& text) override;
@@ -132,12 +135,18 @@ class StWriter final : public StepWriter {
   void call(const Statement& statement, bool reset, std::string& text) override;
   [[nodiscard]] std::string_view output_name(std::uint32_t output) const override { return layout_.outputs[output]; }
   [[nodiscard]] std::string_view word_for(const Value& value) const override { return word_for_result(value.op); }
-  [[nodiscard]] std::string_view place_name() const override { return place_; }
-  void begin_loop(std::uint32_t count, std::string& text) override;
+  [[nodiscard]] bool has_loops() const override { return true; }
+  [[nodiscard]] LoopWords loop_words() override;
+  void begin_loop(std::string_view place, std::size_t first, std::size_t end, std::string& text) override;
   void end_loop(std::string& text) override { text += "END_FOR;\n"; }
+  void declare_array(std::string_view name, Type type, std::size_t length, std::string& text) override;
+  void begin_variable(std::string_view name, bool is_known, std::string& text) override;
+  void print_variable(std::string_view name, std::string& text) const override { printer_.print_variable(name, text); }
+  void set_local(std::string_view element, ValueId value, std::string& text) override;
 
  private:
   void assign(std::string_view target, ValueId value, std::string& text);
+  void set_variable(const std::string& target, ValueId id, std::string& text);
   void line(std::string_view words, std::string& text) const;
   void define_quotient(const Value& value, const std::string& name, std::string& text);
   void define_integer_quotient(const Value& value, const std::string& name, std::string& text);
@@ -147,7 +156,10 @@ class StWriter final : public StepWriter {
 
   StPrinter& printer_;
   const Layout& layout_;
+  Identifiers& identifiers_;
   std::string place_;
+  std::string term_;
+  std::string_view sum_;
 };
 
 }  // namespace hysteron

@@ -1,6 +1,8 @@
 // The statements of a step in Structured Text, with the guards of those operations that would stop a PLC.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "codegen/backends/shared/generated_file.hpp"
 #include "codegen/backends/st/printer.hpp"
 
@@ -11,7 +13,10 @@ constexpr std::size_t widest_call = 100;
 
 StWriter::StWriter(const Graph& the_graph, const Routine& the_routine, StPrinter& printer, Identifiers& the_locals,
                    const Layout& layout, const StNames& names)
-    : StepWriter(the_graph, the_routine, printer, the_locals), printer_(printer), layout_(layout) {
+    : StepWriter(the_graph, the_routine, printer, the_locals),
+      printer_(printer),
+      layout_(layout),
+      identifiers_(the_locals) {
   must_be_named = printer.guards().must_be_named();
   printer.print_variable(names.place, place_);
 }
@@ -113,9 +118,37 @@ void StWriter::fill_cell(std::uint32_t cell, ValueId value, std::string& text) {
   text += "; END_FOR;\n";
 }
 
-void StWriter::begin_loop(std::uint32_t count, std::string& text) {
-  uses_place = true;
-  append(text, fmt::format("FOR {} := 0 TO {} DO\n", place_, count - 1));
+LoopWords StWriter::loop_words() {
+  term_name = identifiers_.make({"TERM"});
+  sum_ = identifiers_.make({"SUM"});
+  term_.clear();
+  printer_.print_variable(term_name, term_);
+  return {.places = {.row = place_, .column = term_}, .sum = sum_, .assign = " := "};
+}
+
+void StWriter::begin_loop(std::string_view place, std::size_t first, std::size_t end, std::string& text) {
+  (place == place_ ? uses_place : uses_term) = true;
+  append(text, fmt::format("FOR {} := {} TO {} DO\n", place, first, end - 1));
+}
+
+void StWriter::declare_array(std::string_view name, Type type, std::size_t length, std::string& /*text*/) {
+  locals.push_back({name, type, static_cast<std::uint32_t>(length)});
+}
+
+void StWriter::begin_variable(std::string_view name, bool is_known, std::string& text) {
+  if (!is_known && std::ranges::find(locals, name, &StLocal::name) == locals.end()) {
+    locals.push_back({name, Type::Real});
+  }
+  printer_.print_variable(name, text);
+}
+
+void StWriter::set_local(std::string_view element, ValueId value, std::string& text) {
+  std::string target;
+  printer_.print_variable(element, target);
+  if (expressions.is_named(value)) {
+    return assign(target, value, text);
+  }
+  set_variable(target, value, text);
 }
 
 // --- values that have a name ---
@@ -131,6 +164,11 @@ void StWriter::define(ValueId id, std::string_view name, std::string& text) {
   }
   std::string target;
   printer_.print_variable(name, target);
+  set_variable(target, id, text);
+}
+
+void StWriter::set_variable(const std::string& target, ValueId id, std::string& text) {
+  const Value& value = routine.tape[id];
   const Guards& guards = printer_.guards();
   if (value.op == Op::Divide && !guards.never_zero(value.args[1])) {
     return define_quotient(value, target, text);

@@ -55,9 +55,10 @@ void Body::hand_over(Place& place, const std::vector<syntax::Argument>& argument
     const auto span = expression(one.value).span;
     if (pin == nullptr) {
       refuse(error::unknown_pin, one.formal.text.empty() ? span : one.formal.span,
-             one.formal.text.empty() ? std::string("this argument does not say which input it is for")
-                                     : fmt::format("there is no input '{}'", one.formal.text),
-             "Write NAME := value with an input of the block.");
+             one.formal.text.empty()
+                 ? fmt::format("this argument does not say which input of '{}' it is for", place.path)
+                 : fmt::format("'{}' has no input '{}'", place.path, one.formal.text),
+             (one.formal.text.empty() ? "Write NAME := before it. " : "") + one_of_members(place, one.formal.text));
       continue;
     }
     const auto member = std::ranges::find(place.members, upper(one.formal.text), &Member::name);
@@ -85,9 +86,17 @@ void Body::hand_back(Place& place, const std::vector<syntax::Argument>& argument
     }
     const Place* const pin = place.find(upper(one.formal.text));
     const auto* target = std::get_if<syntax::Access>(&expression(one.value).node);
-    if (pin == nullptr || pin->leaf == Place::no_leaf || target == nullptr) {
+    if (pin == nullptr) {
+      refuse(error::unknown_pin, one.formal.span, fmt::format("'{}' has no output '{}'", place.path, one.formal.text),
+             one_of_members(place, one.formal.text));
+      continue;
+    }
+    if (pin->leaf == Place::no_leaf || target == nullptr) {
       refuse(error::unknown_pin, one.formal.span,
-             fmt::format("there is no output '{}' for this variable", one.formal.text), "Write OUTPUT => variable.");
+             pin->leaf == Place::no_leaf ? fmt::format("'{}' of '{}' is no single value", one.formal.text, place.path)
+                                         : fmt::format("'{}' is handed to what is no variable", one.formal.text),
+             fmt::format("Write {} => and a variable of its type; of a structure, read a member behind the call.",
+                         one.formal.text));
       continue;
     }
     assign(*target, read(pin->leaf), one.formal.span);

@@ -12,8 +12,9 @@ namespace hysteron::bodies {
 using language::Operator;
 
 namespace {
-constexpr std::int64_t nanoseconds = 1'000'000;  ///< of a millisecond
-}
+constexpr std::int64_t nanoseconds = 1'000'000;           ///< of a millisecond
+constexpr double milliseconds_of_a_round = 4294967296.0;  ///< 2^32, 49.7 days
+}  // namespace
 
 /// TIME(), and what the text of a timer alone may call.
 std::optional<Value> Body::of_time(const std::string& function, language::Span span) {
@@ -45,7 +46,8 @@ std::int64_t Body::sample_time(language::Span span) {
   return around_.sample_time_ns > 0 ? around_.sample_time_ns : nanoseconds;
 }
 
-/// TIME(): the whole milliseconds since the first step, as a PLC counts them, anew from 0 after 2^32 of them.
+/// TIME(): the whole milliseconds since the first step. They are counted with 32 bits, as in a PLC, and each round of
+/// these bits by itself: a time goes on after 49.7 days, and so does the difference of two.
 Value Body::clock(language::Span span) {
   if (clock_) {
     return *clock_;
@@ -68,11 +70,15 @@ Value Body::clock(language::Span span) {
     next = computer_.select(full, computer_.binary(Operator::Add, next, constant(Plain::Udint, 1)), next);
   }
   feed(node, next);
-  Value time = computer_.convert(now, Plain::Lreal);
-  time.type = Plain::Time;
-  clock_ = time;
+  const auto [round, round_node] = delay(Plain::Dint, 0.0, "CLOCK_ROUND", place_of(span));
+  const Value over = computer_.binary(Operator::Less, next, now);
+  feed(round_node, computer_.select(over, computer_.binary(Operator::Add, round, constant(Plain::Dint, 1)), round));
+  const Value rounds = computer_.binary(Operator::Multiply, computer_.convert(round, Plain::Lreal),
+                                        computer_.literal(Plain::Lreal, milliseconds_of_a_round));
+  clock_ = computer_.binary(Operator::Add, computer_.convert(now, Plain::Lreal), rounds);
+  clock_->type = Plain::Time;
   computer_.at(outer);
-  return time;
+  return *clock_;
 }
 
 /// The steps of the task since its first, which come anew from 0 after 2^32.

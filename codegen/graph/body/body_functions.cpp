@@ -1,5 +1,6 @@
 // The functions of the standard in sequential bodies.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -73,8 +74,15 @@ Value Body::call(const syntax::Call& call, language::Span span) {
     }
     const bool taken = at >= values.size() || values[at].valid();
     if (one.output || taken) {
-      return refuse(error::unknown_function, span, fmt::format("{} does not take these arguments", name),
-                    "Give them in the order of the standard.");
+      const std::string which =
+          one.formal.text.empty() ? fmt::format("argument {}", i + 1) : fmt::format("'{}'", one.formal.text);
+      return refuse(error::unknown_function, span,
+                    one.output            ? fmt::format("{} has no output '{}'", name, one.formal.text)
+                    : at >= values.size() ? fmt::format("{} has no {} among {} arguments", name, which, values.size())
+                                          : fmt::format("{} is given {} twice", name, which),
+                    one.output        ? std::string("Assign what the function gives: X := ") + name + "( … );"
+                    : formals.empty() ? std::string("Give its arguments without names, in their order.")
+                                      : fmt::format("Its arguments are {}.", fmt::join(formals, ", ")));
     }
     values[at] = value(one.value);
     if (!values[at].valid()) {
@@ -160,12 +168,12 @@ std::optional<Value> Body::of_number(const std::string& name, const std::vector<
     if (is_integer(x.type)) {
       const Value kept = computer_.fit(x, x.type);
       const Value below = computer_.binary(Operator::Less, kept, computer_.literal(x.type, 0.0));
-      Value result = computer_.select(below, computer_.negative(kept), kept);
+      Value size = computer_.select(below, computer_.negative(kept), kept);
       if (info(x.type).below_zero && kept.low > lowest(Plain::Dint)) {  // whose negative is itself
-        result.low = std::max<std::int64_t>({0, kept.low, -kept.high});
-        result.high = std::max(kept.high, -kept.low);
+        size.low = std::max<std::int64_t>({0, kept.low, -kept.high});
+        size.high = std::max(kept.high, -kept.low);
       }
-      return computer_.fit(result, x.type);
+      return computer_.fit(size, x.type);
     }
     const Value number = as_number(x);
     return number.valid() ? result(Op::Abs, {number}, number.type) : number;
@@ -234,7 +242,9 @@ std::optional<Value> Body::function(const std::string& name, std::vector<Value>&
   const bool rotate = name == "ROL" || name == "ROR";
   if ((shift || rotate) && values.size() == 2) {
     if (!is_integer(values[0].type) || !is_integer(values[1].type)) {
-      return computer_.refused(error::type_mismatch, fmt::format("{} takes bits and a number of places", name),
+      return computer_.refused(error::type_mismatch,
+                               fmt::format("{} takes bits and a number of places, here are {} and {}", name,
+                                           info(values[0].type).name, info(values[1].type).name),
                                "Give it a BYTE, a WORD or a DWORD, and an INT.");
     }
     const bool left = name[2] == 'L';

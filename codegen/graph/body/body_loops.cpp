@@ -158,6 +158,28 @@ bool Body::holds(const Counting& count) {
   if (count.by > 0.0 ? count.last() > high : count.last() < low) {
     return refuse_bound(count.node->to, count.to, count.last());
   }
+  const double rounds = std::floor((count.last() - count.first()) / count.by) + 1.0;
+  const double behind = count.first() + rounds * count.by;
+  if (behind >= low && behind <= high) {
+    return true;
+  }
+  const double end = count.by > 0.0 ? high : low;
+  const bool is_dint = info(type).width == 32;
+  const std::string mend = fmt::format("{} at {:.0f} at the {}.", is_dint ? "End it" : "Count by a DINT, or end it",
+                                       end - count.by, count.by > 0.0 ? "latest" : "lowest");
+  const std::string what = fmt::format(
+      "where a {} ends at {:.0f}, a PLC goes on from the other end, and this FOR never "
+      "ends",
+      info(type).name, end);
+  if (count.to.known()) {
+    refuse(error::type_mismatch, expression(count.node->to).span,
+           fmt::format("'{}' is {}, and does not hold {:.0f}, which stands behind the last round: {}",
+                       count.node->variable.text, info(type).name, behind, what),
+           mend);
+    return false;
+  }
+  refuse(error::other_meaning_elsewhere, expression(count.node->to).span,
+         fmt::format("this FOR may count '{}' to {:.0f}: {}", count.node->variable.text, count.last(), what), mend);
   return true;
 }
 

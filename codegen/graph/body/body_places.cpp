@@ -1,5 +1,6 @@
 // Where values are kept, and what an access means.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <tuple>
@@ -7,12 +8,32 @@
 #include "codegen/graph/body/body.hpp"
 #include "support/element_name.hpp"
 #include "support/errors.hpp"
+#include "support/names.hpp"
 
 namespace hysteron::bodies {
 
 namespace syntax = language::body;
 using language::Operator;
 using language::upper;
+
+std::string one_of_members(const Place& place, std::string_view wanted) {
+  std::vector<std::string> names;
+  for (const bool all : {false, true}) {  // of a structure every member, of a block what is not its own
+    for (const Member& one : place.members) {
+      if (all || one.role <= syntax::Role::InOut) {
+        names.push_back(one.name);
+      }
+    }
+    if (!names.empty()) {
+      break;
+    }
+  }
+  if (names.empty()) {
+    return fmt::format("'{}' has no members: write it alone.", place.path);
+  }
+  const std::string_view near = nearest_name(wanted, names);
+  return near.empty() ? fmt::format("There are {}.", fmt::join(names, ", ")) : fmt::format("Did you mean {}?", near);
+}
 
 namespace {
 
@@ -198,8 +219,8 @@ void Body::set_initial(Place& place, const syntax::Initial& initial) {
     if (Place* const part = place.find(upper(name.text))) {
       set_initial(*part, inner);
     } else {
-      refuse(error::unknown_pin, name.span, fmt::format("there is no member '{}'", name.text),
-             "Name one that is declared.");
+      refuse(error::unknown_pin, name.span, fmt::format("'{}' has no member '{}'", place.path, name.text),
+             one_of_members(place, name.text));
     }
   }
 }
@@ -332,8 +353,11 @@ bool Body::step_into(std::vector<Choice>& list, const syntax::Step& step, const 
     const Place& place = *list.front().place;
     if (place.leaf == Place::no_leaf || !is_integer(leaves_[place.leaf].type) ||
         step.bit >= info(leaves_[place.leaf].type).width) {
+      const bool has_bits = place.leaf != Place::no_leaf && is_integer(leaves_[place.leaf].type);
       refuse(error::type_mismatch, access.span, fmt::format("'{}' has no bit {}", access.name.text, step.bit),
-             "Name a bit of a BYTE, a WORD or a DWORD, from 0 on.");
+             has_bits ? fmt::format("It is {}, with the bits 0 to {}.", info(leaves_[place.leaf].type).name,
+                                    info(leaves_[place.leaf].type).width - 1)
+                      : "Name a bit of a BYTE, a WORD or a DWORD, from 0 on.");
       return false;
     }
     std::ranges::for_each(list, [&](Choice& one) { one.bit = step.bit; });
@@ -346,7 +370,7 @@ bool Body::step_into(std::vector<Choice>& list, const syntax::Step& step, const 
       if (part == nullptr) {
         refuse(error::unknown_pin, step.member.span,
                fmt::format("'{}' has no member '{}'", access.name.text, step.member.text),
-               "Name an input or output of the instance, or a member of the structure.");
+               one_of_members(*one.place, step.member.text));
         return false;
       }
       one.place = part;
@@ -367,8 +391,12 @@ bool Body::index_into(std::vector<Choice>& list, const Value& index, language::S
   std::vector<Choice> next;
   for (const Choice& one : list) {
     if (one.place->type == nullptr || one.place->type->kind != BodyType::Kind::Array || !is_integer(index.type)) {
-      refuse(error::type_mismatch, span, "this index stands behind what is no array, or is no whole number",
-             "Index an ARRAY by an INT or a DINT.");
+      const std::string_view type = info(index.type).name;
+      refuse(error::type_mismatch, span,
+             is_integer(index.type) ? "this is one index too many: what stands before it is no array"
+                                    : fmt::format("this index is {}, no whole number", type),
+             is_integer(index.type) ? "Leave it out, or declare the variable as an ARRAY."
+                                    : fmt::format("Index by an INT or a DINT: {}_TO_DINT( … ).", type));
       return false;
     }
     const BodyType& array = *one.place->type;
@@ -378,7 +406,7 @@ bool Body::index_into(std::vector<Choice>& list, const Value& index, language::S
       if (outside && index.loose) {  // a literal: nobody means the nearest element
         refuse(error::refused_access, span,
                fmt::format("the index {} lies outside of {}..{}", known, array.low, array.high),
-               "Index an element that there is.");
+               fmt::format("'{}' has the elements {} to {}.", one.place->path, array.low, array.high));
         return false;
       }
       known = std::clamp(known, static_cast<double>(array.low), static_cast<double>(array.high));

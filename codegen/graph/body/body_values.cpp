@@ -2,6 +2,7 @@
 
 #include "codegen/graph/body/body.hpp"
 #include "support/errors.hpp"
+#include "support/numbers.hpp"
 
 namespace hysteron::bodies {
 
@@ -30,8 +31,10 @@ Value Body::literal(const syntax::Literal& written) {
                          : !is_integer(type) || (written.value >= static_cast<double>(lowest(type)) &&
                                                  written.value <= static_cast<double>(highest(type)));
   if (!fits) {
-    return computer_.refused(error::number_out_of_range, fmt::format("{}# does not hold this number", written.type),
-                             "Write a number within the range of the type.");
+    return computer_.refused(
+        error::number_out_of_range, fmt::format("{}# does not hold {}", written.type, number_text(written.value)),
+        is_integer(type) ? fmt::format("It holds whole numbers from {} to {}.", lowest(type), highest(type))
+                         : fmt::format("Write LREAL#{}, or the number alone.", number_text(written.value)));
   }
   if (type == Plain::Real) {
     return computer_.fit(computer_.literal(Plain::Lreal, written.value, true), Plain::Real);

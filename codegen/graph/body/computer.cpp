@@ -200,6 +200,14 @@ Value Computer::truncated(const Value& value, Plain type) {
   return whole_of(value.wire, type, false);
 }
 
+/// The lower 32 bits, as a PLC whose TIME has no more of them gives it: what is counted by them goes on for ever.
+Value Computer::whole_milliseconds(const Value& time, Plain type) {
+  const Wire range = builder_.literal(Type::Real, two_to_32);
+  const Wire rounds = apply(Op::ToReal, {apply(Op::ToInt, {apply(Op::Divide, {time.wire, range})})});
+  const Wire rest = apply(Op::Subtract, {time.wire, apply(Op::Multiply, {rounds, range})});
+  return fit(whole_of(rest, Plain::Udint, true), type);
+}
+
 Value Computer::convert(const Value& value, Plain type) {
   const Family from = info(value.type).family;
   const Family to = info(type).family;
@@ -216,8 +224,11 @@ Value Computer::convert(const Value& value, Plain type) {
     }
     report_(
         error::other_meaning_elsewhere, span_,
-        "a TIME as a number is counted in milliseconds here, as in CODESYS, TwinCAT and SIMATIC; MATIEC counts seconds",
-        "Divide times by times, or compare them with literals T#…, where the text shall mean the same everywhere.");
+        fmt::format("{}_TO_{} counts in milliseconds here, as in CODESYS, TwinCAT and SIMATIC; MATIEC counts seconds",
+                    info(value.type).name, info(type).name),
+        to == Family::Duration
+            ? "Write T#1ms * ( … ), which means the same everywhere."
+            : "Compare the time with a literal, T#…, where the text shall mean the same everywhere.");
     Value number = value;  // a number of milliseconds, whichever of the two it is
     number.type = from == Family::Duration ? Plain::Lreal : value.type;
     if (to == Family::Duration) {
@@ -225,7 +236,7 @@ Value Computer::convert(const Value& value, Plain type) {
       number.type = Plain::Time;
       return number;
     }
-    return convert(number, type);
+    return is_integer(type) ? whole_milliseconds(number, type) : convert(number, type);
   }
   if (to == Family::Truth) {
     if (from == Family::Truth) {

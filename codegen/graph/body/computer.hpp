@@ -77,6 +77,7 @@ class Computer {
   Wire whole(std::int64_t value);
   Wire real_of(const Value& value);
   Value whole_of(Wire real, Plain type, bool round);
+  Value whole_milliseconds(const Value& time, Plain type);
   Value integer(Op op, const Value& left, const Value& right, Plain type);
   static std::optional<bool> decided(language::Operator op, const Value& left, const Value& right);
   Value compared(language::Operator op, const Value& left, const Value& right);

@@ -7,6 +7,7 @@
 
 #include "codegen/graph/body/computer.hpp"
 #include "support/errors.hpp"
+#include "support/numbers.hpp"
 
 namespace hysteron::bodies {
 
@@ -128,9 +129,15 @@ bool Computer::meet(Value& left, Value& right, std::string_view what) {
       return true;
     }
   }
+  const bool is_time = left.type == Plain::Time || right.type == Plain::Time;
+  const Value& other = left.type == Plain::Time ? right : left;
+  double number = 0.0;
+  const bool plain = is_time && other.loose && constant(other, number);
   refused(error::type_mismatch,
           fmt::format("{} does not take {} and {}", what, info(left.type).name, info(right.type).name),
-          fmt::format("Convert one of them: {}_TO_{}( … ).", info(right.type).name, info(left.type).name));
+          plain ? fmt::format("Write the number with its unit: T#{0}s, or T#{0}ms.", number_text(number))
+                : fmt::format("Convert one of them: {}_TO_{}( … ).", info(other.type).name,
+                              info(&other == &left ? right.type : left.type).name));
   return false;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "codegen/graph/body/types.hpp"
@@ -34,5 +35,8 @@ struct Place {
     return nullptr;
   }
 };
+
+/// A mend for a member that is not there: the nearest one, or all that can be named.
+[[nodiscard]] std::string one_of_members(const Place& place, std::string_view wanted);
 
 }  // namespace hysteron::bodies

@@ -145,9 +145,11 @@ TypeRef Types::array(const syntax::TypeSpec& spec) {
     count *= std::max<std::int64_t>(1, made->high - made->low + 1);
     if (made->high < made->low || count > most_elements) {
       report_(error::refused_in_body, span,
-              made->high < made->low ? "the upper bound of this array is below the lower one"
-                                     : fmt::format("this array has more than {} elements", most_elements),
-              "Every element is a variable of the step: use fewer.");
+              made->high < made->low
+                  ? fmt::format("the upper bound of this array, {}, is below the lower one, {}", made->high, made->low)
+                  : fmt::format("this array has {} elements, more than {}", count, most_elements),
+              made->high < made->low ? fmt::format("Write the lower one first: {}..{}.", made->high, made->low)
+                                     : "Every element is a variable of the step: use fewer.");
       return nullptr;
     }
     made->element = result;

@@ -46,8 +46,45 @@ constexpr std::string_view golden_diagram = R"(FUNCTION_BLOCK AXIS  (* @ts 1ms *
 END_FUNCTION_BLOCK
 )";
 
+/// Sums of four terms and rows of three; operands that are an array, and such that stand alone; a reset by hand; a
+/// memory that is moved on within itself.
+constexpr std::string_view golden_vectors = R"(FUNCTION_BLOCK OBSERVER  (* @ts 1ms *)
+  VAR_INPUT
+    FORCE, LOAD, TORQUE : LREAL;
+    AGAIN               : BOOL;
+    U                   : ARRAY[0..3] OF LREAL;
+  END_VAR
+  VAR_OUTPUT
+    Y     : ARRAY[0..2] OF LREAL;
+    X     : ARRAY[0..3] OF LREAL;
+    MIXED : ARRAY[0..2] OF LREAL;
+    HELD  : LREAL;
+    CALM  : LREAL;
+  END_VAR
+  VAR
+    MODEL : HY_STATE_SPACE := (A := [0.9, 0.1, 0.0, 0.0,  0.0, 0.8, 0.1, 0.0,  0.0, 0.0, 0.7, 0.1,  0.0, 0.0, 0.0, 0.6],
+                               B := [0.0, 1.0, 0.5, 0.2],
+                               C := [1.0, 0.0, 0.0, 0.0,  0.0, 1.0, 0.0, 0.0,  0.0, 0.0, 1.0, 1.0]);
+    MIX   : HY_MATRIX_GAIN := (K := [1.0, 2.0, 3.0,  4.0, 5.0, 6.0,  7.0, 8.0, 9.0], ROWS := 3);
+    PLANT : HY_TRANSFER_FUNCTION_ZOH := (NUM := [1.0], DEN := [1.0, 2.0, 3.0, 4.0]);
+    NOTCH : HY_TRANSFER_FUNCTION := (NUM := [1.0, 0.5, 0.2, 0.1, 0.0], DEN := [1.0, 0.2, 0.1, 0.05, 0.01]);
+  END_VAR
+
+  MODEL(U := FORCE, R1 := AGAIN);
+  Y := MODEL.Y;
+  X := MODEL.X;
+  MIX(XIN := [FORCE, LOAD, TORQUE + 1.0]);
+  MIXED := MIX.XOUT;
+  PLANT(XIN := LOAD, R1 := AGAIN);
+  HELD := PLANT.XOUT + 0.5 * SUM(U);
+  NOTCH(XIN := TORQUE);
+  CALM := NOTCH.XOUT;
+END_FUNCTION_BLOCK
+)";
+
 void hold_against_golden(const GeneratedFile& file, const std::string& folder) {
-  const std::string path = std::string(HYSTERON_SOURCE_DIR) + "/tests/codegen/backends/goldens/" + folder + "_" + file.name;
+  const std::string path =
+      std::string(HYSTERON_SOURCE_DIR) + "/tests/codegen/backends/goldens/" + folder + "_" + file.name;
   if (std::getenv("HYSTERON_UPDATE_GOLDENS") != nullptr) {
     std::ofstream(path, std::ios::binary) << file.text;
   }
@@ -77,6 +114,16 @@ TEST(Goldens, OfEveryTargetAreKeptToTheByte) {
   hold_against_golden(generate_c(program, {.float32 = true}).back(), "c_float");
   hold_against_golden(generate_cpp_header(program), "cpp");
   hold_against_golden(step_of_batch(program), "batch");
+}
+
+TEST(Goldens, OfVectorsWithinAStepAreKeptToTheByte) {
+  const Program program = compile_text(std::string(golden_vectors));
+  hold_against_golden(generate_st(program, {.dialect = *st_dialect("portable")}).front(), "portable");
+  hold_against_golden(generate_st_structured(program, {.dialect = *st_dialect("portable")}).front(), "structured");
+  for (const GeneratedFile& file : generate_c(program)) {
+    hold_against_golden(file, "c");
+  }
+  hold_against_golden(generate_cpp_header(program), "cpp");
 }
 
 }  // namespace

@@ -157,37 +157,37 @@ void axis_defaults(axis_params *params, axis_in *in) {
 }
 
 void axis_reset(axis_state *state, const axis_params *params) {
-  const double curve_element = element(params->curve.x, 32, 1);
-  const double curve_element_2 = element(params->curve.x, 32, 2);
-  const double curve_element_3 = element(params->curve.x, 32, 3);
-  const double curve_element_4 = element(params->curve.x, 32, 4);
-  const double curve_element_5 = element(params->curve.x, 32, 5);
-  const double curve_element_6 = element(params->curve.x, 32, 6);
-  const double curve_element_7 = element(params->curve.x, 32, 7);
-  const double curve_element_8 = element(params->curve.x, 32, 8);
-  const double curve_element_9 = element(params->curve.x, 32, 9);
-  const double curve_element_10 = element(params->curve.x, 32, 10);
-  const double curve_element_11 = element(params->curve.x, 32, 11);
-  const double curve_element_12 = element(params->curve.x, 32, 12);
-  const double curve_element_13 = element(params->curve.x, 32, 13);
-  const double curve_element_14 = element(params->curve.x, 32, 14);
-  const double curve_element_15 = element(params->curve.x, 32, 15);
-  const double curve_element_16 = element(params->curve.x, 32, 16);
-  const double curve_element_17 = element(params->curve.x, 32, 17);
-  const double curve_element_18 = element(params->curve.x, 32, 18);
-  const double curve_element_19 = element(params->curve.x, 32, 19);
-  const double curve_element_20 = element(params->curve.x, 32, 20);
-  const double curve_element_21 = element(params->curve.x, 32, 21);
-  const double curve_element_22 = element(params->curve.x, 32, 22);
-  const double curve_element_23 = element(params->curve.x, 32, 23);
-  const double curve_element_24 = element(params->curve.x, 32, 24);
-  const double curve_element_25 = element(params->curve.x, 32, 25);
-  const double curve_element_26 = element(params->curve.x, 32, 26);
-  const double curve_element_27 = element(params->curve.x, 32, 27);
-  const double curve_element_28 = element(params->curve.x, 32, 28);
-  const double curve_element_29 = element(params->curve.x, 32, 29);
-  const double curve_element_30 = element(params->curve.x, 32, 30);
-  state->curve.rising = (2 <= params->curve.count) && (params->curve.count <= 32) && ((params->curve.count <= 1) || (element(params->curve.x, 32, 0) < curve_element)) && ((params->curve.count <= 2) || (curve_element < curve_element_2)) && ((params->curve.count <= 3) || (curve_element_2 < curve_element_3)) && ((params->curve.count <= 4) || (curve_element_3 < curve_element_4)) && ((params->curve.count <= 5) || (curve_element_4 < curve_element_5)) && ((params->curve.count <= 6) || (curve_element_5 < curve_element_6)) && ((params->curve.count <= 7) || (curve_element_6 < curve_element_7)) && ((params->curve.count <= 8) || (curve_element_7 < curve_element_8)) && ((params->curve.count <= 9) || (curve_element_8 < curve_element_9)) && ((params->curve.count <= 10) || (curve_element_9 < curve_element_10)) && ((params->curve.count <= 11) || (curve_element_10 < curve_element_11)) && ((params->curve.count <= 12) || (curve_element_11 < curve_element_12)) && ((params->curve.count <= 13) || (curve_element_12 < curve_element_13)) && ((params->curve.count <= 14) || (curve_element_13 < curve_element_14)) && ((params->curve.count <= 15) || (curve_element_14 < curve_element_15)) && ((params->curve.count <= 16) || (curve_element_15 < curve_element_16)) && ((params->curve.count <= 17) || (curve_element_16 < curve_element_17)) && ((params->curve.count <= 18) || (curve_element_17 < curve_element_18)) && ((params->curve.count <= 19) || (curve_element_18 < curve_element_19)) && ((params->curve.count <= 20) || (curve_element_19 < curve_element_20)) && ((params->curve.count <= 21) || (curve_element_20 < curve_element_21)) && ((params->curve.count <= 22) || (curve_element_21 < curve_element_22)) && ((params->curve.count <= 23) || (curve_element_22 < curve_element_23)) && ((params->curve.count <= 24) || (curve_element_23 < curve_element_24)) && ((params->curve.count <= 25) || (curve_element_24 < curve_element_25)) && ((params->curve.count <= 26) || (curve_element_25 < curve_element_26)) && ((params->curve.count <= 27) || (curve_element_26 < curve_element_27)) && ((params->curve.count <= 28) || (curve_element_27 < curve_element_28)) && ((params->curve.count <= 29) || (curve_element_28 < curve_element_29)) && ((params->curve.count <= 30) || (curve_element_29 < curve_element_30)) && ((params->curve.count <= 31) || (curve_element_30 < element(params->curve.x, 32, 31)));
+  const double curve_element = params->curve.x[1];
+  const double curve_element_2 = params->curve.x[2];
+  const double curve_element_3 = params->curve.x[3];
+  const double curve_element_4 = params->curve.x[4];
+  const double curve_element_5 = params->curve.x[5];
+  const double curve_element_6 = params->curve.x[6];
+  const double curve_element_7 = params->curve.x[7];
+  const double curve_element_8 = params->curve.x[8];
+  const double curve_element_9 = params->curve.x[9];
+  const double curve_element_10 = params->curve.x[10];
+  const double curve_element_11 = params->curve.x[11];
+  const double curve_element_12 = params->curve.x[12];
+  const double curve_element_13 = params->curve.x[13];
+  const double curve_element_14 = params->curve.x[14];
+  const double curve_element_15 = params->curve.x[15];
+  const double curve_element_16 = params->curve.x[16];
+  const double curve_element_17 = params->curve.x[17];
+  const double curve_element_18 = params->curve.x[18];
+  const double curve_element_19 = params->curve.x[19];
+  const double curve_element_20 = params->curve.x[20];
+  const double curve_element_21 = params->curve.x[21];
+  const double curve_element_22 = params->curve.x[22];
+  const double curve_element_23 = params->curve.x[23];
+  const double curve_element_24 = params->curve.x[24];
+  const double curve_element_25 = params->curve.x[25];
+  const double curve_element_26 = params->curve.x[26];
+  const double curve_element_27 = params->curve.x[27];
+  const double curve_element_28 = params->curve.x[28];
+  const double curve_element_29 = params->curve.x[29];
+  const double curve_element_30 = params->curve.x[30];
+  state->curve.rising = (2 <= params->curve.count) && (params->curve.count <= 32) && ((params->curve.count <= 1) || (params->curve.x[0] < curve_element)) && ((params->curve.count <= 2) || (curve_element < curve_element_2)) && ((params->curve.count <= 3) || (curve_element_2 < curve_element_3)) && ((params->curve.count <= 4) || (curve_element_3 < curve_element_4)) && ((params->curve.count <= 5) || (curve_element_4 < curve_element_5)) && ((params->curve.count <= 6) || (curve_element_5 < curve_element_6)) && ((params->curve.count <= 7) || (curve_element_6 < curve_element_7)) && ((params->curve.count <= 8) || (curve_element_7 < curve_element_8)) && ((params->curve.count <= 9) || (curve_element_8 < curve_element_9)) && ((params->curve.count <= 10) || (curve_element_9 < curve_element_10)) && ((params->curve.count <= 11) || (curve_element_10 < curve_element_11)) && ((params->curve.count <= 12) || (curve_element_11 < curve_element_12)) && ((params->curve.count <= 13) || (curve_element_12 < curve_element_13)) && ((params->curve.count <= 14) || (curve_element_13 < curve_element_14)) && ((params->curve.count <= 15) || (curve_element_14 < curve_element_15)) && ((params->curve.count <= 16) || (curve_element_15 < curve_element_16)) && ((params->curve.count <= 17) || (curve_element_16 < curve_element_17)) && ((params->curve.count <= 18) || (curve_element_17 < curve_element_18)) && ((params->curve.count <= 19) || (curve_element_18 < curve_element_19)) && ((params->curve.count <= 20) || (curve_element_19 < curve_element_20)) && ((params->curve.count <= 21) || (curve_element_20 < curve_element_21)) && ((params->curve.count <= 22) || (curve_element_21 < curve_element_22)) && ((params->curve.count <= 23) || (curve_element_22 < curve_element_23)) && ((params->curve.count <= 24) || (curve_element_23 < curve_element_24)) && ((params->curve.count <= 25) || (curve_element_24 < curve_element_25)) && ((params->curve.count <= 26) || (curve_element_25 < curve_element_26)) && ((params->curve.count <= 27) || (curve_element_26 < curve_element_27)) && ((params->curve.count <= 28) || (curve_element_27 < curve_element_28)) && ((params->curve.count <= 29) || (curve_element_28 < curve_element_29)) && ((params->curve.count <= 30) || (curve_element_29 < curve_element_30)) && ((params->curve.count <= 31) || (curve_element_30 < params->curve.x[31]));
   state->sum.sum = 0.0;
   state->sum.lost = 0.0;
   state->slower.xout = 0.0;
@@ -217,7 +217,7 @@ void axis_step(const axis_params *params, axis_state *state, const axis_in *in, 
   const int32_t curve_difference_2 = int_subtract(params->curve.count, 1);
   const double curve_element_33 = element(params->curve.y, 32, curve_choice_5);
   const double curve_difference_3 = curve_element_32 - curve_element_31;
-  const double curve_xout = curve_error ? 0.0 : ((curve_is_not && (in->target <= element(params->curve.x, 32, 0))) ? element(params->curve.y, 32, 0) : ((curve_is_not && (element(params->curve.x, 32, curve_difference_2) <= in->target)) ? element(params->curve.y, 32, curve_difference_2) : (curve_element_33 + (((in->target - curve_element_31) / ((0.0 < curve_difference_3) ? curve_difference_3 : 1.0)) * (element(params->curve.y, 32, curve_sum_6) - curve_element_33)))));
+  const double curve_xout = curve_error ? 0.0 : ((curve_is_not && (in->target <= params->curve.x[0])) ? params->curve.y[0] : ((curve_is_not && (element(params->curve.x, 32, curve_difference_2) <= in->target)) ? element(params->curve.y, 32, curve_difference_2) : (curve_element_33 + (((in->target - curve_element_31) / ((0.0 < curve_difference_3) ? curve_difference_3 : 1.0)) * (element(params->curve.y, 32, curve_sum_6) - curve_element_33)))));
 
   // BOUND : HY_LIMIT
   const double bound_xout = real_min(real_max(curve_xout, params->bound.mn), params->bound.mx);

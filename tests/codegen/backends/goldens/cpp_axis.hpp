@@ -118,37 +118,37 @@ inline std::int32_t modulo(std::int32_t a, std::int32_t b) noexcept { return b =
 
 /// Puts the state to its beginning.
 inline void reset(const Params& params, State& state) noexcept {
-  const Real back_t = detail::at(params.curve.x, 1);
-  const Real back_t_2 = detail::at(params.curve.x, 2);
-  const Real back_t_3 = detail::at(params.curve.x, 3);
-  const Real back_t_4 = detail::at(params.curve.x, 4);
-  const Real back_t_5 = detail::at(params.curve.x, 5);
-  const Real back_t_6 = detail::at(params.curve.x, 6);
-  const Real back_t_7 = detail::at(params.curve.x, 7);
-  const Real back_t_8 = detail::at(params.curve.x, 8);
-  const Real back_t_9 = detail::at(params.curve.x, 9);
-  const Real back_t_10 = detail::at(params.curve.x, 10);
-  const Real back_t_11 = detail::at(params.curve.x, 11);
-  const Real back_t_12 = detail::at(params.curve.x, 12);
-  const Real back_t_13 = detail::at(params.curve.x, 13);
-  const Real back_t_14 = detail::at(params.curve.x, 14);
-  const Real back_t_15 = detail::at(params.curve.x, 15);
-  const Real back_t_16 = detail::at(params.curve.x, 16);
-  const Real back_t_17 = detail::at(params.curve.x, 17);
-  const Real back_t_18 = detail::at(params.curve.x, 18);
-  const Real back_t_19 = detail::at(params.curve.x, 19);
-  const Real back_t_20 = detail::at(params.curve.x, 20);
-  const Real back_t_21 = detail::at(params.curve.x, 21);
-  const Real back_t_22 = detail::at(params.curve.x, 22);
-  const Real back_t_23 = detail::at(params.curve.x, 23);
-  const Real back_t_24 = detail::at(params.curve.x, 24);
-  const Real back_t_25 = detail::at(params.curve.x, 25);
-  const Real back_t_26 = detail::at(params.curve.x, 26);
-  const Real back_t_27 = detail::at(params.curve.x, 27);
-  const Real back_t_28 = detail::at(params.curve.x, 28);
-  const Real back_t_29 = detail::at(params.curve.x, 29);
-  const Real back_t_30 = detail::at(params.curve.x, 30);
-  state.curve.rising = 2 <= params.curve.count && params.curve.count <= 32 && (params.curve.count <= 1 || detail::at(params.curve.x, 0) < back_t) && (params.curve.count <= 2 || back_t < back_t_2) && (params.curve.count <= 3 || back_t_2 < back_t_3) && (params.curve.count <= 4 || back_t_3 < back_t_4) && (params.curve.count <= 5 || back_t_4 < back_t_5) && (params.curve.count <= 6 || back_t_5 < back_t_6) && (params.curve.count <= 7 || back_t_6 < back_t_7) && (params.curve.count <= 8 || back_t_7 < back_t_8) && (params.curve.count <= 9 || back_t_8 < back_t_9) && (params.curve.count <= 10 || back_t_9 < back_t_10) && (params.curve.count <= 11 || back_t_10 < back_t_11) && (params.curve.count <= 12 || back_t_11 < back_t_12) && (params.curve.count <= 13 || back_t_12 < back_t_13) && (params.curve.count <= 14 || back_t_13 < back_t_14) && (params.curve.count <= 15 || back_t_14 < back_t_15) && (params.curve.count <= 16 || back_t_15 < back_t_16) && (params.curve.count <= 17 || back_t_16 < back_t_17) && (params.curve.count <= 18 || back_t_17 < back_t_18) && (params.curve.count <= 19 || back_t_18 < back_t_19) && (params.curve.count <= 20 || back_t_19 < back_t_20) && (params.curve.count <= 21 || back_t_20 < back_t_21) && (params.curve.count <= 22 || back_t_21 < back_t_22) && (params.curve.count <= 23 || back_t_22 < back_t_23) && (params.curve.count <= 24 || back_t_23 < back_t_24) && (params.curve.count <= 25 || back_t_24 < back_t_25) && (params.curve.count <= 26 || back_t_25 < back_t_26) && (params.curve.count <= 27 || back_t_26 < back_t_27) && (params.curve.count <= 28 || back_t_27 < back_t_28) && (params.curve.count <= 29 || back_t_28 < back_t_29) && (params.curve.count <= 30 || back_t_29 < back_t_30) && (params.curve.count <= 31 || back_t_30 < detail::at(params.curve.x, 31));
+  const Real back_t = params.curve.x[1];
+  const Real back_t_2 = params.curve.x[2];
+  const Real back_t_3 = params.curve.x[3];
+  const Real back_t_4 = params.curve.x[4];
+  const Real back_t_5 = params.curve.x[5];
+  const Real back_t_6 = params.curve.x[6];
+  const Real back_t_7 = params.curve.x[7];
+  const Real back_t_8 = params.curve.x[8];
+  const Real back_t_9 = params.curve.x[9];
+  const Real back_t_10 = params.curve.x[10];
+  const Real back_t_11 = params.curve.x[11];
+  const Real back_t_12 = params.curve.x[12];
+  const Real back_t_13 = params.curve.x[13];
+  const Real back_t_14 = params.curve.x[14];
+  const Real back_t_15 = params.curve.x[15];
+  const Real back_t_16 = params.curve.x[16];
+  const Real back_t_17 = params.curve.x[17];
+  const Real back_t_18 = params.curve.x[18];
+  const Real back_t_19 = params.curve.x[19];
+  const Real back_t_20 = params.curve.x[20];
+  const Real back_t_21 = params.curve.x[21];
+  const Real back_t_22 = params.curve.x[22];
+  const Real back_t_23 = params.curve.x[23];
+  const Real back_t_24 = params.curve.x[24];
+  const Real back_t_25 = params.curve.x[25];
+  const Real back_t_26 = params.curve.x[26];
+  const Real back_t_27 = params.curve.x[27];
+  const Real back_t_28 = params.curve.x[28];
+  const Real back_t_29 = params.curve.x[29];
+  const Real back_t_30 = params.curve.x[30];
+  state.curve.rising = 2 <= params.curve.count && params.curve.count <= 32 && (params.curve.count <= 1 || params.curve.x[0] < back_t) && (params.curve.count <= 2 || back_t < back_t_2) && (params.curve.count <= 3 || back_t_2 < back_t_3) && (params.curve.count <= 4 || back_t_3 < back_t_4) && (params.curve.count <= 5 || back_t_4 < back_t_5) && (params.curve.count <= 6 || back_t_5 < back_t_6) && (params.curve.count <= 7 || back_t_6 < back_t_7) && (params.curve.count <= 8 || back_t_7 < back_t_8) && (params.curve.count <= 9 || back_t_8 < back_t_9) && (params.curve.count <= 10 || back_t_9 < back_t_10) && (params.curve.count <= 11 || back_t_10 < back_t_11) && (params.curve.count <= 12 || back_t_11 < back_t_12) && (params.curve.count <= 13 || back_t_12 < back_t_13) && (params.curve.count <= 14 || back_t_13 < back_t_14) && (params.curve.count <= 15 || back_t_14 < back_t_15) && (params.curve.count <= 16 || back_t_15 < back_t_16) && (params.curve.count <= 17 || back_t_16 < back_t_17) && (params.curve.count <= 18 || back_t_17 < back_t_18) && (params.curve.count <= 19 || back_t_18 < back_t_19) && (params.curve.count <= 20 || back_t_19 < back_t_20) && (params.curve.count <= 21 || back_t_20 < back_t_21) && (params.curve.count <= 22 || back_t_21 < back_t_22) && (params.curve.count <= 23 || back_t_22 < back_t_23) && (params.curve.count <= 24 || back_t_23 < back_t_24) && (params.curve.count <= 25 || back_t_24 < back_t_25) && (params.curve.count <= 26 || back_t_25 < back_t_26) && (params.curve.count <= 27 || back_t_26 < back_t_27) && (params.curve.count <= 28 || back_t_27 < back_t_28) && (params.curve.count <= 29 || back_t_28 < back_t_29) && (params.curve.count <= 30 || back_t_29 < back_t_30) && (params.curve.count <= 31 || back_t_30 < params.curve.x[31]);
   state.sum.sum = 0.0;
   state.sum.lost = 0.0;
   state.slower.xout = 0.0;
@@ -179,7 +179,7 @@ inline Out step(const Params& params, State& state, const In& in) noexcept {
   const std::int32_t curve_t_16 = detail::subtract(params.curve.count, 1);
   const Real curve_t_17 = detail::at(params.curve.y, curve_t_11);
   const Real curve_t_18 = curve_t_14 - curve_t_12;
-  const Real curve_xout = curve_error ? 0.0 : (curve_t_15 && in.target <= detail::at(params.curve.x, 0)) ? detail::at(params.curve.y, 0) : (curve_t_15 && detail::at(params.curve.x, curve_t_16) <= in.target) ? detail::at(params.curve.y, curve_t_16) : curve_t_17 + (in.target - curve_t_12) / (0.0 < curve_t_18 ? curve_t_18 : 1.0) * (detail::at(params.curve.y, curve_t_13) - curve_t_17);
+  const Real curve_xout = curve_error ? 0.0 : (curve_t_15 && in.target <= params.curve.x[0]) ? params.curve.y[0] : (curve_t_15 && detail::at(params.curve.x, curve_t_16) <= in.target) ? detail::at(params.curve.y, curve_t_16) : curve_t_17 + (in.target - curve_t_12) / (0.0 < curve_t_18 ? curve_t_18 : 1.0) * (detail::at(params.curve.y, curve_t_13) - curve_t_17);
 
   // BOUND : HY_LIMIT
   const Real bound_xout = detail::min(detail::max(curve_xout, params.bound.mn), params.bound.mx);

@@ -85,7 +85,8 @@ void print(std::string_view text) {
 /// To the standard error, with the lines that they speak of.
 void say(const Diagnostics& diagnostics) {
   Sources sources;
-  (void)std::fputs(as_text(diagnostics, sources, {.colour = wants_colour(stderr)}).c_str(), stderr);
+  const std::string text = as_text(diagnostics, sources, {.colour = wants_colour(stderr)});
+  (void)std::fputs(weighted(text, diagnostics.has_errors() ? Weight::error : Weight::warning).c_str(), stderr);
 }
 
 int run(StepProgram& program, const HostProgram& host, std::span<const char* const> words) {
@@ -126,7 +127,7 @@ int host_program(StepProgram& program, const HostProgram& host, int argc, const 
   } catch (const InputError& refused) {
     say(refused.diagnostics());
   } catch (const std::exception& fault) {
-    (void)std::fputs(fmt::format("{}: {}\n", host.name, fault.what()).c_str(), stderr);
+    (void)std::fputs(weighted(fmt::format("{}: {}\n", host.name, fault.what()), Weight::error).c_str(), stderr);
   }
   return 2;
 }

@@ -48,11 +48,23 @@ std::string_view meaning_of(Fault fault) {
 
 }  // namespace
 
+std::string weighted(std::string_view lines, Weight weight) {
+  if (!is_journal(STDERR_FILENO)) {
+    return std::string(lines);
+  }
+  std::string text;
+  while (!lines.empty()) {
+    const std::size_t end = std::min(lines.find('\n'), lines.size() - 1) + 1;
+    text += fmt::format("<{}>{}", static_cast<unsigned>(weight), lines.substr(0, end));
+    lines.remove_prefix(end);
+  }
+  return text;
+}
+
 void tell(std::string_view from, const std::string& line, Weight weight) {
   pollfd error{STDERR_FILENO, POLLOUT, 0};
   if (::poll(&error, 1, 0) == 1 && (error.revents & POLLOUT) != 0) {
-    const std::string priority = is_journal(STDERR_FILENO) ? fmt::format("<{}>", static_cast<unsigned>(weight)) : "";
-    const std::string whole = fmt::format("{}{}: {}\n", priority, from, line.substr(0, longest_line));
+    const std::string whole = weighted(fmt::format("{}: {}\n", from, line.substr(0, longest_line)), weight);
     [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, whole.data(), whole.size());
   }
 }

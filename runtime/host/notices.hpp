@@ -24,6 +24,9 @@ enum class Weight : std::uint8_t {
   notice = 5,   ///< what was wrong is well again, or was asked for
 };
 
+/// Lines for standard error; where systemd takes them into its journal, each with its priority.
+[[nodiscard]] std::string weighted(std::string_view lines, Weight weight);
+
 /// Where standard error takes a line at once: nobody who reads it is waited for.
 void tell(std::string_view from, const std::string& line, Weight weight = Weight::warning);
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 
 #include "runtime/host/notices.hpp"
@@ -89,11 +90,13 @@ TEST(Notices, ALineInTheJournalHasItsPriority) {
     tell("Modbus", "one");
     tell("Fault", "two", Weight::error);
     tell("Fault", "none any more", Weight::notice);
+    (void)std::fputs(weighted("error: a\n\nmend: b", Weight::error).c_str(), stderr);
     ::unsetenv("JOURNAL_STREAM");
     return testing::internal::GetCapturedStderr();
   };
-  EXPECT_EQ(told(true), "<4>Modbus: one\n<3>Fault: two\n<5>Fault: none any more\n");
-  EXPECT_EQ(told(false), "Modbus: one\nFault: two\nFault: none any more\n");
+  EXPECT_EQ(weighted("HY803 error: one\nmend: two", Weight::error), "HY803 error: one\nmend: two");
+  EXPECT_EQ(told(true), "<4>Modbus: one\n<3>Fault: two\n<5>Fault: none any more\n<3>error: a\n<3>\n<3>mend: b");
+  EXPECT_EQ(told(false), "Modbus: one\nFault: two\nFault: none any more\nerror: a\n\nmend: b");
 }
 
 TEST(ForceNotices, AreALineWhereTheSetChangedAndOneASecondAtTheMost) {

@@ -9,6 +9,7 @@
 
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron::fleet {
 namespace {
@@ -22,11 +23,9 @@ std::optional<std::size_t> number_in(const Variable& variable, const char* name)
   if (text == nullptr || *text == '\0') {
     return std::nullopt;
   }
-  std::size_t value = 0;
-  const std::string_view all(text);
-  const auto read = std::from_chars(all.data(), all.data() + all.size(), value);
-  if (read.ec != std::errc() || read.ptr != all.data() + all.size()) {
-    contradict(fmt::format("{} is \"{}\", which is no whole number.", name, all));
+  const auto value = whole_number<std::size_t>(text);
+  if (!value) {
+    contradict(fmt::format("{} is \"{}\", which is no whole number.", name, text));
   }
   return value;
 }

@@ -1,6 +1,5 @@
 // Content-Length framing of LSP 3.17, "Base Protocol".
 #include <algorithm>
-#include <charconv>
 #include <istream>
 #include <optional>
 #include <ostream>
@@ -10,6 +9,7 @@
 
 #include "lsp/server.hpp"
 #include "support/names.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron::lsp {
 namespace {
@@ -34,9 +34,7 @@ std::optional<std::size_t> read_header(std::istream& in) {
     if (equal_ignoring_case(std::string_view(line).substr(0, key.size()), key)) {
       const auto first = std::min(line.find_first_not_of(' ', key.size()), line.size());
       const auto end = line.ends_with('\r') ? line.size() - 1 : line.size();
-      std::size_t value = 0;
-      const auto read = std::from_chars(line.data() + first, line.data() + end, value);
-      length = read.ec == std::errc() && read.ptr == line.data() + end ? std::optional(value) : std::nullopt;
+      length = whole_number<std::size_t>(std::string_view(line).substr(first, end - first));
     }
   }
   return length;

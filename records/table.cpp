@@ -1,8 +1,7 @@
 #include "records/table.hpp"
 
-#include <charconv>
-
 #include "support/names.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron::records {
 
@@ -22,11 +21,9 @@ std::vector<std::size_t> columns_called(const Table& table, std::string_view nam
       found.push_back(i);
     }
   }
-  std::size_t number = 0;
-  const auto read = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (found.empty() && read.ec == std::errc() && read.ptr == name.data() + name.size() && number >= 1 &&
-      number <= table.columns.size()) {
-    found.push_back(number - 1);
+  const auto number = whole_number<std::size_t>(name, 1, table.columns.size());
+  if (found.empty() && number) {
+    found.push_back(*number - 1);
   }
   return found;
 }

@@ -92,7 +92,7 @@ struct Point {
 };
 
 struct PointWrite {
-  std::size_t point = 0;  ///< index into points(); of the live page, a place of its view
+  std::size_t point = 0;  ///< index into points(), or the place of a parameter that came with an online change
   double value = 0.0;
 };
 
@@ -112,7 +112,8 @@ struct PageRights {
 /// All values of one cycle. A value is a double whatever its type; integers are exact to 2^53.
 struct Snapshot {
   std::uint64_t cycle = 0;
-  std::vector<double> values;  ///< as points()
+  /// As points(); behind them, those of parameters that came with an online change, by their places.
+  std::vector<double> values;
 };
 
 /// What the live page sees: the version of the diagram that runs. An online change begins another.

@@ -43,20 +43,6 @@ namespace fs = std::filesystem;
   throw InputError(error::unwritable_file, place, cause, mend);
 }
 
-bool write_all(int descriptor, std::string_view contents) {
-  while (!contents.empty()) {
-    const ssize_t written = ::write(descriptor, contents.data(), contents.size());
-    if (written < 0) {
-      if (errno == EINTR) {
-        continue;
-      }
-      return false;
-    }
-    contents.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
-}
-
 void write_in_place(const fs::path& path, std::string_view contents) {
   Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
   if (file.number() < 0 || !write_all(file.number(), contents) || !file.close()) {
@@ -186,6 +172,20 @@ class Staging {
 };
 
 }  // namespace
+
+bool write_all(int descriptor, std::string_view contents) noexcept {
+  while (!contents.empty()) {
+    const ssize_t written = ::write(descriptor, contents.data(), contents.size());
+    if (written < 0) {
+      if (errno == EINTR) {
+        continue;
+      }
+      return false;
+    }
+    contents.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
 
 bool flush_folder(const fs::path& folder) noexcept {
   const Descriptor opened(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));

@@ -37,6 +37,9 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
 /// InputError HY700; std::invalid_argument where two have the same path.
 void write_files_atomically(const std::vector<OutputFile>& files);
 
+/// Writes all of it to an open file, however many calls that takes. Where it cannot be, false, and errno says why.
+[[nodiscard]] bool write_all(int descriptor, std::string_view contents) noexcept;
+
 /// Brings the names in a folder to the disk, so that a power cut leaves them; "" is the folder of the process. Where it
 /// cannot be, false, and errno says why.
 bool flush_folder(const std::filesystem::path& folder) noexcept;

@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <optional>
 
 #include "support/utf8.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron {
 namespace {
@@ -114,11 +114,8 @@ void append_wrapped(std::string& result, std::string_view line, std::size_t widt
 
 std::size_t terminal_width(std::FILE* stream) {
   if (const char* const columns = std::getenv("COLUMNS")) {
-    const std::string_view text(columns);
-    std::size_t width = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), width);
-    if (problem == std::errc{} && end == text.data() + text.size() && width > 0) {
-      return width;
+    if (const auto width = whole_number<std::size_t>(columns, 1)) {
+      return *width;
     }
   }
   winsize size{};

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <optional>
 #include <set>
@@ -13,6 +12,7 @@
 #include "codegen/backends/c_family/names.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
+#include "support/whole_number.hpp"
 #include "tool/elf_symbols.hpp"
 
 namespace hysteron::tool {
@@ -41,8 +41,11 @@ bool read_symbol(std::string_view text, Named& named) {
   std::string_view digits = text.substr(plus + 1);
   const bool hexadecimal = digits.starts_with("0x") || digits.starts_with("0X");
   digits.remove_prefix(hexadecimal ? 2 : 0);
-  const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), object.offset, hexadecimal ? 16 : 10);
-  return !object.symbol.empty() && read.ec == std::errc() && read.ptr == digits.data() + digits.size();
+  using Offset = decltype(object.offset);
+  constexpr std::numeric_limits<Offset> limits;
+  const auto offset = whole_number(digits, limits.min(), limits.max(), hexadecimal ? 16 : 10);
+  object.offset = offset.value_or(0);
+  return !object.symbol.empty() && offset.has_value();
 }
 
 NamedObjects named_objects(const CalibrationOptions& options) {

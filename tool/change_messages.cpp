@@ -15,6 +15,17 @@ Place place_of(const Json& json) {
           .length = json.value("length", 1U)};
 }
 
+/// What no restart moves has null there.
+Json registers_json(const std::vector<runtime::PointRegister>& registers) {
+  Json list = Json::array();
+  for (const runtime::PointRegister& one : registers) {
+    list.push_back({{"name", one.name},
+                    {"address", one.address},
+                    {"after_restart", one.after_restart.empty() ? Json() : Json(one.after_restart)}});
+  }
+  return list;
+}
+
 }  // namespace
 
 Json as_json(const runtime::ChangeReport& report) {
@@ -38,7 +49,9 @@ Json as_json(const runtime::ChangeReport& report) {
           {"states_carried", report.states_carried},
           {"left", report.left},
           {"other_values", report.other_values},
-          {"without_register", report.without_register},
+          {"registers", registers_json(report.registers.added)},
+          {"without_register", report.registers.without},
+          {"registers_until_restart", registers_json(report.registers.until_restart)},
           {"as_before", report.as_before},
           {"step_time_ns", report.step_time},
           {"steps_tried", report.rehearsed},

@@ -2,13 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <memory>
 #include <string>
 #include <string_view>
 
 #include "support/errors.hpp"
 #include "support/names.hpp"
+#include "support/whole_number.hpp"
 #include "tool/commands.hpp"
 #include "tool/error_pages.hpp"
 
@@ -28,9 +28,7 @@ int number_of(std::string_view text) {
   if (text.size() > 2 && equal_ignoring_case(text.substr(0, 2), "HY")) {
     text.remove_prefix(2);
   }
-  int number = 0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-  return read.ec == std::errc() && read.ptr == text.data() + text.size() ? number : 0;
+  return whole_number<int>(text).value_or(0);
 }
 
 int explain(const std::string& wanted, Console& console) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <string_view>
@@ -11,6 +10,7 @@
 #include "runtime/config/run_config.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -22,15 +22,10 @@ class Reader {
   explicit Reader(std::string_view text) : rest_(text) {}
 
   std::optional<int> digits(std::size_t count) {
-    int value = 0;
-    if (rest_.size() < count) {
-      return std::nullopt;
+    const auto value = rest_.size() < count ? std::nullopt : whole_number(rest_.substr(0, count), 0);
+    if (value) {
+      rest_.remove_prefix(count);
     }
-    const auto [end, fault] = std::from_chars(rest_.data(), rest_.data() + count, value);
-    if (fault != std::errc{} || end != rest_.data() + count || value < 0) {
-      return std::nullopt;
-    }
-    rest_.remove_prefix(count);
     return value;
   }
   bool sign(std::string_view any) {

@@ -106,6 +106,23 @@ std::string list_text(std::string_view title, const Json& names) {
   return names.empty() ? "" : fmt::format("{}: {}\n", title, fmt::join(names.get<std::vector<std::string>>(), ", "));
 }
 
+/// The first of them, and how many there are beside.
+Json register_texts(const Json& registers) {
+  constexpr std::size_t most = 8;
+  Json texts = Json::array();
+  for (const Json& one : registers) {
+    const std::string then =
+        one.at("after_restart").is_null() ? "" : fmt::format(" (then {})", one.at("after_restart").get<std::string>());
+    texts.push_back(one.at("name").get<std::string>() + " at " + one.at("address").get<std::string>() + then);
+  }
+  if (texts.size() > most) {
+    const std::size_t beside = texts.size() - most;
+    texts.erase(texts.begin() + most, texts.end());
+    texts.push_back(fmt::format("and {} more (--json has all)", beside));
+  }
+  return texts;
+}
+
 std::string change_text(const Json& report, bool is_back) {
   std::string text = fmt::format(
       "{}: {}\n{} of {} parameters and {} of {} states {} carried over\n", report.at("program").get<std::string>(),
@@ -126,7 +143,10 @@ std::string change_text(const Json& report, bool is_back) {
   text += list_text("as before the change", report.at("as_before"));
   text += list_text(is_back ? "as they run, and not as before the change" : "as they run, and not as in the files",
                     report.at("other_values"));
+  text += list_text("new registers", register_texts(report.at("registers")));
   text += list_text("without a register until a restart", report.at("without_register"));
+  text += list_text("elsewhere after a restart, for want of lock_file under [modbus]",
+                    register_texts(report.at("registers_until_restart")));
   text += fmt::format("a step of it takes {}, {:.2g} % of the period; the limit is {:.3g} %\n",
                       runtime::short_time_text(report.at("step_time_ns").get<double>()),
                       100.0 * report.at("load").get<double>(), 100.0 * report.at("load_limit").get<double>());

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "support/numbers.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -29,11 +29,8 @@ bool is_number(std::string_view text, const std::function<bool(double)>& takes) 
 }  // namespace
 
 CLI::Validator whole_number_from(std::uint64_t least) {
-  return validator(fmt::format("a whole number from {} on", least), [least](std::string_view text) {
-    std::uint64_t number = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return problem == std::errc{} && end == text.data() + text.size() && number >= least;
-  });
+  return validator(fmt::format("a whole number from {} on", least),
+                   [least](std::string_view text) { return whole_number(text, least).has_value(); });
 }
 
 CLI::Validator number_from_zero() {

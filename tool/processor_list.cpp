@@ -1,18 +1,12 @@
 #include "tool/processor_list.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
-#include <system_error>
+#include <cstdint>
+
+#include "support/whole_number.hpp"
 
 namespace hysteron::tool {
-
-std::optional<std::uint64_t> parse_whole_number(std::string_view text) {
-  std::uint64_t number = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return problem == std::errc{} && end == text.data() + text.size() && !text.empty() ? std::optional(number)
-                                                                                     : std::nullopt;
-}
 
 std::optional<std::vector<unsigned>> parse_processors(std::string_view text) {
   std::vector<unsigned> processors;
@@ -23,8 +17,8 @@ std::optional<std::vector<unsigned>> parse_processors(std::string_view text) {
     const auto comma = std::min(text.find(','), text.size());
     const std::string_view part = text.substr(0, comma);
     const auto dash = std::min(part.find('-'), part.size());
-    const auto first = parse_whole_number(part.substr(0, dash));
-    const auto last = dash == part.size() ? first : parse_whole_number(part.substr(dash + 1));
+    const auto first = whole_number<std::uint64_t>(part.substr(0, dash));
+    const auto last = dash == part.size() ? first : whole_number<std::uint64_t>(part.substr(dash + 1));
     constexpr std::uint64_t most = 65'535;
     if (!first || !last || *last < *first || *last > most) {
       return std::nullopt;

@@ -1,16 +1,12 @@
 // Lists of processors as the kernel writes them in /sys and /proc.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace hysteron::tool {
-
-/// Digits alone, of 64 bits.
-[[nodiscard]] std::optional<std::uint64_t> parse_whole_number(std::string_view text);
 
 /// Of a list of processors as the kernel writes it, "0-2,5": 0, 1, 2, 5. Nothing where it is none.
 [[nodiscard]] std::optional<std::vector<unsigned>> parse_processors(std::string_view text);

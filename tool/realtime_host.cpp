@@ -11,6 +11,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "support/whole_number.hpp"
 #include "tool/processor_list.hpp"
 
 namespace hysteron::tool {
@@ -52,8 +53,9 @@ std::vector<unsigned> numbered(const fs::path& folder, std::string_view prefix) 
   std::error_code none;
   for (fs::directory_iterator next(folder, none), end; !none && next != end; next.increment(none)) {
     const std::string name = next->path().filename().string();
-    const auto number =
-        name.starts_with(prefix) ? parse_whole_number(std::string_view(name).substr(prefix.size())) : std::nullopt;
+    const auto number = name.starts_with(prefix)
+                            ? whole_number<std::uint64_t>(std::string_view(name).substr(prefix.size()))
+                            : std::nullopt;
     if (number) {
       numbers.push_back(static_cast<unsigned>(*number));
     }
@@ -229,7 +231,7 @@ class Host {
       std::string name;
       for (const unsigned state : numbered(folder, "state")) {
         const fs::path one = folder / fmt::format("state{}", state);
-        const auto latency = parse_whole_number(line_of(one / "latency").value_or(""));
+        const auto latency = whole_number<std::uint64_t>(line_of(one / "latency").value_or(""));
         is_any = is_any || latency.has_value();
         if (!latency || line_of(one / "disable").value_or("0") != "0") {
           continue;
@@ -372,8 +374,8 @@ class Host {
       return unknown_limit("real-time priority");
     }
     const bool is_allowed =
-        has_right(nice_right) ||
-        parse_whole_number(*limit).value_or(*limit == "unlimited" ? 99 : 0) >= static_cast<std::uint64_t>(priority_);
+        has_right(nice_right) || whole_number<std::uint64_t>(*limit).value_or(*limit == "unlimited" ? 99 : 0) >=
+                                     static_cast<std::uint64_t>(priority_);
     return {.name = "real-time priority",
             .found = has_right(nice_right) ? "the right is there" : "up to " + *limit,
             .rating = is_allowed ? Rating::good : Rating::bad,

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -16,6 +15,7 @@
 #include "support/names.hpp"
 #include "support/text_file.hpp"
 #include "support/toml_text.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -30,10 +30,7 @@ constexpr TomlKind test_file{error::test_file_syntax, error::test_file_syntax,
 
 /// A step as a key: 0, 5, 100.
 std::optional<std::size_t> step_of(std::string_view key) {
-  std::size_t step = 0;
-  const auto [end, problem] = std::from_chars(key.data(), key.data() + key.size(), step);
-  const bool whole = problem == std::errc{} && end == key.data() + key.size();
-  return whole && step < static_cast<std::size_t>(most_steps) ? std::optional(step) : std::nullopt;
+  return whole_number<std::size_t>(key, 0, most_steps - 1);
 }
 
 /// In the order of the file; the library gives keys in that of their names.

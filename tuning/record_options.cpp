@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string_view>
 #include <tuple>
@@ -21,6 +20,7 @@
 #include "support/numbers.hpp"
 #include "support/overwriting.hpp"
 #include "support/trimmed.hpp"
+#include "support/whole_number.hpp"
 #include "tuning/record_units.hpp"
 
 namespace hysteron {
@@ -68,10 +68,7 @@ std::pair<std::string_view, std::string_view> ends_of(std::string_view option, s
 }
 
 std::optional<std::size_t> whole(std::string_view text) {
-  std::size_t value = 0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  return read.ec == std::errc() && read.ptr == text.data() + text.size() && value > 0 ? std::optional(value)
-                                                                                      : std::nullopt;
+  return whole_number<std::size_t>(text, 1);
 }
 
 /// NAME or NAME[unit].

@@ -7,12 +7,12 @@
 #include <map>
 #include <pugixml.hpp>
 #include <string_view>
-#include <system_error>
 
 #include "codegen/plcopen/tc6.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/trimmed.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron::import {
 namespace {
@@ -110,10 +110,7 @@ Number number_of(const char* text) {
 }
 
 std::optional<std::uint64_t> stated_number(const char* text) {
-  std::uint64_t value = 0;
-  const std::string_view view = trimmed(text, " \t\r\n");
-  const auto [end, fault] = std::from_chars(view.data(), view.data() + view.size(), value);
-  return fault == std::errc() && end == view.data() + view.size() ? std::optional(value) : std::nullopt;
+  return whole_number<std::uint64_t>(trimmed(text, " \t\r\n"));
 }
 
 /// Some editors count from 0; others write 0 on each element whose place nobody chose. An order is one element's alone:

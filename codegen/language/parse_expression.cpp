@@ -6,13 +6,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <utility>
 
 #include "codegen/language/binary_sign.hpp"
 #include "codegen/language/parser.hpp"
 #include "support/errors.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron::language {
 namespace {
@@ -213,9 +213,7 @@ bool Parser::is_bit() const {
 
 /// The number behind the dot; -1 where it names no bit.
 int Parser::bit_number(std::string_view digits) {
-  int bit = 0;
-  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), bit);
-  return problem == std::errc{} && end == digits.data() + digits.size() && bit <= highest_bit ? bit : -1;
+  return whole_number(digits, 0, highest_bit).value_or(-1);
 }
 
 /// A value that is no variable, whose bits have no numbers.

@@ -169,7 +169,8 @@ void watch_over(Guard& guard, Task& task) {
                    was_idle ? "The task takes its outputs to their safe values and ends, for nothing would if "
                               "it hung or died. Find out what ended the process, and start the task again."
                             : "It held the outputs on devices, and nobody writes them now: see to the devices, "
-                              "end the task, and find out what ended the process."));
+                              "end the task, and find out what ended the process."),
+       Weight::error);
   task.guard_lost();
 }
 
@@ -363,11 +364,14 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   const auto tls = config.modbus && config.modbus->tls
                        ? std::make_shared<const modbus::TlsContext>(*config.modbus->tls, modbus::OutOfDate::taken)
                        : nullptr;
-  const auto server = config.modbus ? serve_modbus(*config.modbus, shape.name, task, tls) : nullptr;
-  how += server && server->port() != 0 ? fmt::format("; Modbus on {}:{}", config.modbus->listen, server->port()) : "";
+  const auto registers = config.modbus ? std::make_unique<ServedMap>(config, shape.name, task, tls) : nullptr;
+  modbus::Server* const server = registers ? &registers->server() : nullptr;
+  how += server != nullptr && server->port() != 0
+             ? fmt::format("; Modbus on {}:{}", config.modbus->listen, server->port())
+             : "";
   how += tls ? fmt::format(" over TLS, certificate until {}", tls->valid_until()) : "";
   how += tls && tls->fault_at(std::time(nullptr)) != modbus::TlsFault::none ? " (no client comes in)" : "";
-  how += server && config.modbus->rtu
+  how += server != nullptr && config.modbus->rtu
              ? fmt::format("; Modbus RTU on {}, unit {}", config.modbus->rtu->line.path, config.modbus->rtu->unit)
              : "";
   const auto companion = options.beside ? options.beside(task.door(), how) : nullptr;
@@ -410,14 +414,14 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   }
   task.door().attach(std::move(taps));
   RunNotices notices(config, shape, task, attachments, std::move(beside));
-  CertificateCare certificate(server.get(), task, tls ? &*config.modbus->tls : nullptr, tls);
+  CertificateCare certificate(server, task, tls ? &*config.modbus->tls : nullptr, tls);
   LoopEnd end = LoopEnd::stopped;
   {
     const CyclicThread cyclic(task, config, options.virtual_time);
     print(how + "; " + cyclic.obtained() + "\n");
     tell_service_manager("READY=1");
     if (change) {
-      change->begin(retainer.get(), trace.get());
+      change->begin(retainer.get(), trace.get(), registers.get());
     }
     wait_for(cyclic, task, guard.get(), claims, notices, certificate, nanoseconds(shape.period));
     end = cyclic.end();

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -19,6 +18,7 @@
 #include "support/failed_writes.hpp"
 #include "support/render.hpp"
 #include "support/text_file.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -45,12 +45,11 @@ InputError bad_usage(const std::string& cause, const std::string& name) {
 }
 
 std::uint64_t parse_cycles(std::string_view text, const std::string& name) {
-  std::uint64_t cycles = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), cycles);
-  if (problem != std::errc{} || end != text.data() + text.size() || cycles == 0) {
+  const auto cycles = whole_number<std::uint64_t>(text, 1);
+  if (!cycles) {
     throw bad_usage(fmt::format("--cycles needs a whole number from 1 on, and has \"{}\".", text), name);
   }
-  return cycles;
+  return *cycles;
 }
 
 CommandLine parse(std::span<const char* const> words, const std::string& name) {
@@ -86,7 +85,8 @@ void print(std::string_view text) {
 /// To the standard error, with the lines that they speak of.
 void say(const Diagnostics& diagnostics) {
   Sources sources;
-  (void)std::fputs(as_text(diagnostics, sources, {.colour = wants_colour(stderr)}).c_str(), stderr);
+  const std::string text = as_text(diagnostics, sources, {.colour = wants_colour(stderr)});
+  (void)std::fputs(weighted(text, diagnostics.has_errors() ? Weight::error : Weight::warning).c_str(), stderr);
 }
 
 int run(StepProgram& program, const HostProgram& host, std::span<const char* const> words) {
@@ -127,7 +127,7 @@ int host_program(StepProgram& program, const HostProgram& host, int argc, const 
   } catch (const InputError& refused) {
     say(refused.diagnostics());
   } catch (const std::exception& fault) {
-    (void)std::fputs(fmt::format("{}: {}\n", host.name, fault.what()).c_str(), stderr);
+    (void)std::fputs(weighted(fmt::format("{}: {}\n", host.name, fault.what()), Weight::error).c_str(), stderr);
   }
   return 2;
 }

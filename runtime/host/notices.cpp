@@ -8,11 +8,15 @@
 #include <cstddef>
 #include <utility>
 
+#include "runtime/host/service_notice.hpp"
+
 namespace hysteron::runtime {
 namespace {
 
 constexpr std::size_t longest_line = 500;  // less than a pipe takes at once
 constexpr std::chrono::seconds time_to_answer{1};
+/// At what is forced: it takes the lock of the servers.
+constexpr std::chrono::milliseconds between_looks{100};
 
 /// What to look for.
 std::string_view meaning_of(Fault fault) {
@@ -43,10 +47,23 @@ std::string_view meaning_of(Fault fault) {
 
 }  // namespace
 
-void tell(std::string_view from, const std::string& line) {
+std::string weighted(std::string_view lines, Weight weight) {
+  if (!is_journal(STDERR_FILENO)) {
+    return std::string(lines);
+  }
+  std::string text;
+  while (!lines.empty()) {
+    const std::size_t end = std::min(lines.find('\n'), lines.size() - 1) + 1;
+    text += fmt::format("<{}>{}", static_cast<unsigned>(weight), lines.substr(0, end));
+    lines.remove_prefix(end);
+  }
+  return text;
+}
+
+void tell(std::string_view from, const std::string& line, Weight weight) {
   pollfd error{STDERR_FILENO, POLLOUT, 0};
   if (::poll(&error, 1, 0) == 1 && (error.revents & POLLOUT) != 0) {
-    const std::string whole = fmt::format("{}: {}\n", from, line.substr(0, longest_line));
+    const std::string whole = weighted(fmt::format("{}: {}\n", from, line.substr(0, longest_line)), weight);
     [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, whole.data(), whole.size());
   }
 }
@@ -54,19 +71,21 @@ void tell(std::string_view from, const std::string& line) {
 void WriteNotices::look() {
   if (const std::string problem = retainer_ == nullptr ? "" : retainer_->problem(); problem.empty() == told_retain_) {
     told_retain_ = !told_retain_;
-    tell("Retain", told_retain_
-                       ? fmt::format("the newest state on the disk stays {}: {}. Clear what is in the way there; each "
-                                     "further state is tried again.",
-                                     retainer_->written(), problem)
-                       : fmt::format("written again, state {}.", retainer_->written()));
+    tell("Retain",
+         told_retain_ ? fmt::format("the newest state on the disk stays {}: {}. Clear what is in the way there; each "
+                                    "further state is tried again.",
+                                    retainer_->written(), problem)
+                      : fmt::format("written again, state {}.", retainer_->written()),
+         told_retain_ ? Weight::warning : Weight::notice);
   }
   if (trace_ != nullptr && trace_->is_cut() != told_trace_) {
     told_trace_ = !told_trace_;
-    tell("Trace", told_trace_
-                      ? fmt::format("ends here: {}. Clear what is in the way there; another file is tried every "
-                                    "10 s.",
-                                    trace_->problem())
-                      : fmt::format("written again, into another file; {} steps are in none.", trace_->dropped()));
+    tell("Trace",
+         told_trace_ ? fmt::format("ends here: {}. Clear what is in the way there; another file is tried every "
+                                   "10 s.",
+                                   trace_->problem())
+                     : fmt::format("written again, into another file; {} steps are in none.", trace_->dropped()),
+         told_trace_ ? Weight::warning : Weight::notice);
   }
 }
 
@@ -186,7 +205,7 @@ void RunNotices::look() {
     report = {.fault = guard_->fault(), .last = guard_->fault(), .count = report.count + 1};
   }
   if (const std::string line = faults_.line(report, FaultNotices::Clock::now()); !line.empty()) {
-    tell("Fault", line);
+    tell("Fault", line, report.fault == Fault::none ? Weight::notice : Weight::error);
   }
 }
 
@@ -196,11 +215,12 @@ void RunNotices::last_look() {
 }
 
 void RunNotices::look_at_forces(ForceNotices::Clock::time_point now) {
-  if (!may_force_) {
+  if (!may_force_ || now < next_look_at_forces_) {
     return;
   }
+  next_look_at_forces_ = now + between_looks;
   if (const std::string line = forces_.line(task_->door().forced(), now); !line.empty()) {
-    tell("Forced", line);
+    tell("Forced", line, Weight::notice);
   }
 }
 

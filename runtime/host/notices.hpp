@@ -17,8 +17,18 @@
 
 namespace hysteron::runtime {
 
+/// How much a line matters: a priority of the journal, where it goes there (syslog(3)).
+enum class Weight : std::uint8_t {
+  error = 3,    ///< outputs may be at their safe values
+  warning = 4,  ///< something has to be seen to
+  notice = 5,   ///< what was wrong is well again, or was asked for
+};
+
+/// Lines for standard error; where systemd takes them into its journal, each with its priority.
+[[nodiscard]] std::string weighted(std::string_view lines, Weight weight);
+
 /// Where standard error takes a line at once: nobody who reads it is waited for.
-void tell(std::string_view from, const std::string& line);
+void tell(std::string_view from, const std::string& line, Weight weight = Weight::warning);
 
 /// What could not be written, each once until it is well again.
 class WriteNotices {
@@ -144,6 +154,7 @@ class RunNotices {
   WriteNotices writes_;
   FaultNotices faults_;
   ForceNotices forces_{};
+  ForceNotices::Clock::time_point next_look_at_forces_{};
 };
 
 }  // namespace hysteron::runtime

@@ -87,9 +87,10 @@ struct OnlineChange::Plan {
 OnlineChange::OnlineChange(ChangeableProgram& program, Task& task, std::vector<OutputLimit> limits, double most_load)
     : program_(&program), task_(&task), limits_(std::move(limits)), most_load_(most_load) {}
 
-void OnlineChange::begin(Retainer* retainer, const Trace* trace) {
+void OnlineChange::begin(Retainer* retainer, const Trace* trace, ServedMap* registers) {
   retainer_ = retainer;
   trace_ = trace;
+  registers_ = registers;
   has_begun_.store(true, std::memory_order_release);
 }
 
@@ -170,10 +171,6 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
       report.other_values.push_back(fmt::format("{} = {}{} ({} {})", one.name, number_text(carried.parameters[i]),
                                                 one.unit.empty() ? "" : " " + one.unit, number_text(plan.given[i]),
                                                 plan.own_state ? "before the change" : "in the files"));
-    }
-    const auto reached = plan.next.parameters().first(program_->shape().parameters.size());
-    if (std::ranges::find(reached, std::optional(i)) == reached.end()) {
-      report.without_register.push_back(one.name);
     }
   }
   next.reset();  // what starts at a parameter starts at the carried one
@@ -349,16 +346,29 @@ void OnlineChange::tell_changed(ChangeReport& report, ChangeOutcome outcome) {
   tell("Online change",
        fmt::format("{}version {} of {} runs; {} of {} parameters and {} of {} states are carried over",
                    outcome == ChangeOutcome::back ? "back: " : "", report.version, report.program,
-                   report.parameters_carried, report.parameters, report.states_carried, report.states));
+                   report.parameters_carried, report.parameters, report.states_carried, report.states),
+       Weight::notice);
 }
 
-void OnlineChange::tell_door() {
+std::optional<NextMap> OnlineChange::next_map(const ProgramVersion& version) const {
+  if (registers_ == nullptr) {
+    return {};
+  }
+  return registers_->next(
+      task_->door().points_of({.program = version.program(), .places = version.parameters(), .parameters = {}}),
+      version.program());
+}
+
+void OnlineChange::tell_door(std::optional<NextMap> registers) {
   const ProgramVersion& version = program_->version();
   task_->door().version_changed({.program = version.program(),
                                  .places = version.parameters(),
                                  .parameters = program_->parameters(),
                                  .live = version.live,
                                  .number = program_->version_number()});
+  if (registers) {
+    registers_->show(std::move(*registers));
+  }
 }
 
 void OnlineChange::require_sound(const ProgramShape& next, const ChangeWish& wish) const {
@@ -373,14 +383,16 @@ ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const
     const ChangeWish wish = as_named(asked, program->shape());
     auto next = std::make_unique<ProgramVersion>(std::move(program), program_->shape(), program_->parameters());
     next->live = task_->door().live_row({.program = next->program(), .places = next->parameters()});
+    auto registers = next_map(*next);
     auto held = wish.only_check ? nullptr : held_commits(task_->door());
     ChangeReport report = carry_out({.next = *next, .given = parameters_of(next->program())}, wish);
+    report.registers = registers ? registers->change : RegisterChange{};
     if (wish.only_check) {
       return report;
     }
     const auto gone = program_->keep(std::move(next));
     keep_as_given(wish.as_given);
-    tell_door();
+    tell_door(std::move(registers));
     held.reset();
     tell_changed(report, ChangeOutcome::changed);
     if (retainer_ != nullptr) {
@@ -417,15 +429,17 @@ ChangeReport OnlineChange::change_back(const ChangeWish& asked) {
       program.restore(*begin.own_state);
     };
     try {
+      auto registers = next_map(*former);
       auto held = wish.only_check ? nullptr : held_commits(task_->door());
       ChangeReport report = carry_out(begin, wish);
+      report.registers = registers ? registers->change : RegisterChange{};
       if (wish.only_check) {
         as_it_was();
         return report;
       }
       program_->keep_former();
       keep_as_given(wish.as_given);
-      tell_door();
+      tell_door(std::move(registers));
       held.reset();
       tell_changed(report, ChangeOutcome::back);
       return report;

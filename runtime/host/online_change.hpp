@@ -10,11 +10,13 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "runtime/config/run_config.hpp"
 #include "runtime/host/change_checks.hpp"
+#include "runtime/host/served_map.hpp"
 #include "runtime/task/changeable_program.hpp"
 #include "runtime/task/task.hpp"
 #include "support/diagnostic.hpp"
@@ -41,7 +43,7 @@ struct ChangeReport {
   std::size_t states_carried = 0;
   std::vector<std::string> left{};          ///< what is not carried over, with the reason: there is the running version
   std::vector<std::string> other_values{};  ///< parameters carried over that the other version gives other values
-  std::vector<std::string> without_register{};  ///< parameters that servers reach after a restart alone
+  RegisterChange registers{};               ///< where they are served
   /// On the way back: what only the version before has, which goes on as it was when that was changed.
   std::vector<std::string> as_before{};
   double step_time = 0.0;     ///< of the other version, beside the task: the mean of its own CPU time, in ns
@@ -57,7 +59,7 @@ class OnlineChange {
   OnlineChange(ChangeableProgram& program, Task& task, std::vector<OutputLimit> limits, double most_load = 1.0);
 
   /// The task runs from now on. Each may be null.
-  void begin(Retainer* retainer, const Trace* trace);
+  void begin(Retainer* retainer, const Trace* trace, ServedMap* registers = nullptr);
   /// The task ends: who waits for it is refused, and so is who comes.
   void end() noexcept { has_ended_.store(true); }
 
@@ -87,8 +89,10 @@ class OnlineChange {
   [[nodiscard]] ChangeVerdict propose(Plan& plan);
   /// Remembers parameters that were not carried over.
   void keep_as_given(const std::vector<std::string>& names);
+  /// The registers with another version; nothing where none are served.
+  [[nodiscard]] std::optional<NextMap> next_map(const ProgramVersion& version) const;
   /// Servers judge and show the version that runs now.
-  void tell_door();
+  void tell_door(std::optional<NextMap> registers);
   /// Tells of the version that runs now, once its values are on the disk.
   void tell_changed(ChangeReport& report, ChangeOutcome outcome);
   /// Begins a change; throws where it cannot be now.
@@ -107,6 +111,7 @@ class OnlineChange {
   double most_load_;
   Retainer* retainer_ = nullptr;
   const Trace* trace_ = nullptr;
+  ServedMap* registers_ = nullptr;
   std::map<std::string, double> as_given_{};  ///< parameters that were taken so, as the running version then had them
   std::uint64_t retained_before_ = 0;         ///< how often the version to come was retained when it was proposed
   std::mutex under_way_{};

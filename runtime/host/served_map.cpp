@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "runtime/host/notices.hpp"
+#include "runtime/modbus/address_text.hpp"
 #include "support/atomic_file.hpp"
 #include "support/text_file.hpp"
 
@@ -35,78 +38,156 @@ struct PlannedMap {
   std::string lock_text{};  ///< empty where the file stays as it is
 };
 
-PlannedMap planned_map(const ModbusConfig& config, const std::string& title, PointDoor& door) {
-  modbus::MapRequest request{.title = title,
-                             .placing = config.placing,
-                             .order = config.word_order,
-                             .has_discovery = config.has_discovery,
-                             .expose = config.expose,
-                             .expose_place = config.expose_place,
-                             .given = config.registers,
-                             .lock_file = config.lock_file};
+modbus::RegisterMap map_with(const ModbusConfig& config, const std::string& title, std::span<const Point> points,
+                             std::string lock_text) {
+  return modbus::make_register_map(points, {.title = title,
+                                            .placing = config.placing,
+                                            .order = config.word_order,
+                                            .has_discovery = config.has_discovery,
+                                            .expose = config.expose,
+                                            .expose_place = config.expose_place,
+                                            .given = config.registers,
+                                            .lock_file = config.lock_file,
+                                            .lock_text = std::move(lock_text)});
+}
+
+PlannedMap planned_map(const ModbusConfig& config, const std::string& title, std::span<const Point> points) {
   // Where that cannot be told, reading it says why.
   std::error_code unknown;
   const bool has_lock =
       !config.lock_file.empty() && (std::filesystem::exists(config.lock_file, unknown) || unknown != std::error_code{});
-  request.lock_text =
+  const std::string before =
       has_lock ? placed(config.place, [&] { return read_text_file(config.lock_file); }) : config.first_addresses;
-  PlannedMap planned{.map = modbus::make_register_map(door.points(), request)};
+  PlannedMap planned{.map = map_with(config, title, points, before)};
   if (!config.lock_file.empty()) {
     const auto text = modbus::lock_text(planned.map);
-    planned.lock_text = has_lock && text == request.lock_text ? "" : text;
+    planned.lock_text = has_lock && text == before ? "" : text;
   }
   return planned;
 }
 
-/// The map of a program that does not run yet.
-PlannedMap planned_map(const RunConfig& config, const StepProgram& program) {
-  TaskDoor door(program, config.task.inputs, config.task.outputs, config.task.field_points);
-  return planned_map(config.modbus.value_or(ModbusConfig{}), program.shape().name, door);
+/// The points of a program that does not run yet.
+std::vector<Point> points_of(const RunConfig& config, const StepProgram& program) {
+  const TaskDoor door(program, config.task.inputs, config.task.outputs, config.task.field_points);
+  return {door.points().begin(), door.points().end()};
 }
 
-/// `at_start`: a full disk keeps no task from starting; without another edit, the next start has the same addresses.
-void write_lock_file(const ModbusConfig& config, const PlannedMap& planned, bool at_start) {
-  const auto write = [&] {
-    try {
-      write_file_atomically(config.lock_file, planned.lock_text);
-    } catch (const DiskFullError& full) {
-      if (!at_start) {
-        throw;
-      }
-      tell("Modbus", full.diagnostics().all().front().cause + " It is tried at the next start: edit nothing before.");
-    }
-  };
-  if (!planned.lock_text.empty()) {
-    placed(config.place, write);
+PlannedMap planned_map(const RunConfig& config, const StepProgram& program) {
+  return planned_map(config.modbus.value_or(ModbusConfig{}), program.shape().name, points_of(config, program));
+}
+
+void write_lock_file(const ModbusConfig& config, const std::string& text) {
+  if (!text.empty()) {
+    placed(config.place, [&] { write_file_atomically(config.lock_file, text); });
   }
+}
+
+void tell_warnings(std::span<const Diagnostic> warnings) {
+  for (const Diagnostic& one : warnings) {
+    tell("Modbus", fmt::format("HY{} {}:{}: {} {}", one.number, one.place.file, one.place.line, one.cause, one.mend));
+  }
+}
+
+std::map<std::string, std::string> addresses_in(const modbus::RegisterMap& map) {
+  std::map<std::string, std::string> addresses;
+  for (const modbus::MapEntry& entry : map.entries()) {
+    addresses.emplace(map.point_of(entry).name, modbus::address_text(entry.at));
+  }
+  return addresses;
+}
+
+/// Whether a parameter of a version is this point, and not only one of its name.
+bool is_of(const Point& point, std::span<const ProgramSignal> parameters) {
+  return std::ranges::any_of(parameters, [&](const ProgramSignal& one) {
+    return one.name == point.name && one.type == point.type && (one.unit.empty() ? "1" : one.unit) == point.unit;
+  });
 }
 
 }  // namespace
 
-std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const std::string& title, Task& task,
-                                             const std::shared_ptr<const modbus::TlsContext>& tls) {
-  const PlannedMap planned = planned_map(config, title, task.door());
-  auto server = std::make_unique<modbus::Server>(
+ServedMap::ServedMap(const RunConfig& config, std::string title, Task& task,
+                     const std::shared_ptr<const modbus::TlsContext>& tls)
+    : config_(&config), title_(std::move(title)), first_points_(task.door().points().size()) {
+  const ModbusConfig& modbus = *config.modbus;
+  const PlannedMap planned = planned_map(modbus, title_, task.door().points());
+  server_ = std::make_unique<modbus::Server>(
       planned.map, task.door(),
-      modbus::ServerOptions{.listen = config.listen,
-                            .port = config.port,
-                            .allow = config.allow,
-                            .connections = config.connections,
-                            .connections_per_address = config.connections_per_address,
-                            .evict = config.evict,
-                            .read_only = config.read_only,
-                            .rtu = config.rtu,
-                            .limits = {.idle = config.idle},
-                            .heartbeat = config.heartbeat,
+      modbus::ServerOptions{.listen = modbus.listen,
+                            .port = modbus.port,
+                            .allow = modbus.allow,
+                            .connections = modbus.connections,
+                            .connections_per_address = modbus.connections_per_address,
+                            .evict = modbus.evict,
+                            .read_only = modbus.read_only,
+                            .rtu = modbus.rtu,
+                            .limits = {.idle = modbus.idle},
+                            .heartbeat = modbus.heartbeat,
                             .client_lost = [&task](bool lost) { task.client_lost(lost); },
                             .tls = tls,
                             .tell = [](const std::string& line) { tell("Modbus", line); },
-                            .place = config.place});
-  write_lock_file(config, planned, true);
-  for (const Diagnostic& one : planned.map.warnings().all()) {
-    tell("Modbus", fmt::format("HY{} {}:{}: {} {}", one.number, one.place.file, one.place.line, one.cause, one.mend));
+                            .place = modbus.place});
+  try {
+    write_lock_file(modbus, planned.lock_text);
+  } catch (const DiskFullError& full) {
+    // It keeps no task from starting; without another edit, the next start has the same addresses.
+    tell("Modbus", full.diagnostics().all().front().cause + " It is tried at the next start: edit nothing before.");
   }
-  return server;
+  tell_warnings(planned.map.warnings().all());
+}
+
+NextMap ServedMap::next(const std::vector<Point>& points, const StepProgram& version) const {
+  const ModbusConfig& modbus = *config_->modbus;
+  const auto now = server_->map();
+  NextMap next{.map = map_with(modbus, title_, points, modbus::lock_text(*now))};
+  const auto served = addresses_in(*now);
+  const auto addresses = addresses_in(next.map);
+  const std::span<const Point> further = std::span(points).subspan(first_points_);
+  for (const Point& point : further) {
+    const auto address = addresses.find(point.name);
+    const auto first = std::ranges::find(points, point.name, &Point::name);
+    if (!is_of(point, version.shape().parameters)) {
+      continue;
+    }
+    if (&*first != &point) {
+      next.change.without.push_back(point.name + " (its name has had another type or unit since the start)");
+    } else if (address == addresses.end()) {
+      next.change.without.push_back(point.name + " (expose does not name it)");
+    } else if (!served.contains(point.name)) {
+      next.change.added.push_back({.name = point.name, .address = address->second});
+    }
+  }
+  try {
+    const auto later = map_with(modbus, version.shape().name, points_of(*config_, version),
+                                modbus.lock_file.empty() ? modbus.first_addresses : modbus::lock_text(next.map));
+    for (const auto& [name, address] : addresses_in(later)) {
+      if (const auto known = addresses.find(name); known != addresses.end() && known->second != address) {
+        next.change.until_restart.push_back({.name = name, .address = known->second, .after_restart = address});
+      }
+    }
+  } catch (const InputError&) {
+    // Only with an edited run file can the version be started: that says where its registers are then.
+  }
+  return next;
+}
+
+void ServedMap::show(NextMap next) {
+  const ModbusConfig& modbus = *config_->modbus;
+  const auto before = server_->map();
+  server_->show(next.map);
+  if (const std::string text = modbus::lock_text(next.map);
+      !modbus.lock_file.empty() && text != modbus::lock_text(*before)) {
+    try {
+      write_lock_file(modbus, text);
+    } catch (const InputError& refused) {
+      tell("Modbus", refused.diagnostics().all().front().cause +
+                         " After a restart, registers that came with the online change may be elsewhere.");
+    }
+  }
+  std::vector<Diagnostic> warnings;
+  std::ranges::copy_if(next.map.warnings().all(), std::back_inserter(warnings), [&](const Diagnostic& one) {
+    return std::ranges::find(before->warnings().all(), one.cause, &Diagnostic::cause) == before->warnings().all().end();
+  });
+  tell_warnings(warnings);
 }
 
 void check_register_map(const RunConfig& config, const StepProgram& program) {
@@ -117,7 +198,7 @@ void check_register_map(const RunConfig& config, const StepProgram& program) {
 
 modbus::RegisterMap register_map_of(const RunConfig& config, const StepProgram& program) {
   PlannedMap planned = planned_map(config, program);
-  write_lock_file(config.modbus.value_or(ModbusConfig{}), planned, false);
+  write_lock_file(config.modbus.value_or(ModbusConfig{}), planned.lock_text);
   return std::move(planned.map);
 }
 

@@ -1,6 +1,8 @@
 #include "runtime/host/service_notice.hpp"
 
+#include <fmt/format.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -38,6 +40,13 @@ std::chrono::microseconds service_watchdog() {
   const auto number = parse_number(text == nullptr ? "" : text);
   const bool usable = number.status == NumberStatus::Finite && number.value > 0.0 && number.value < 1e12;
   return std::chrono::microseconds(usable ? static_cast<std::int64_t>(number.value) : 0);
+}
+
+bool is_journal(int descriptor) {
+  const char* const stream = std::getenv("JOURNAL_STREAM");
+  struct stat found {};
+  return stream != nullptr && ::fstat(descriptor, &found) == 0 &&
+         fmt::format("{}:{}", found.st_dev, found.st_ino) == stream;
 }
 
 }  // namespace hysteron::runtime

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <string>
+
+#include "support/whole_number.hpp"
 
 namespace hysteron::runtime::modbus {
 namespace {
@@ -57,12 +58,7 @@ std::optional<ParsedAddress> parse_direct(std::string_view text) {
 }  // namespace
 
 std::optional<std::uint32_t> parse_count(std::string_view digits) {
-  std::uint32_t number = 0;
-  const auto [end, flaw] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (flaw != std::errc() || end != digits.data() + digits.size() || digits.size() > 5) {
-    return std::nullopt;
-  }
-  return number;
+  return digits.size() > 5 ? std::nullopt : whole_number<std::uint32_t>(digits);
 }
 
 std::string_view name_of(Area area) {

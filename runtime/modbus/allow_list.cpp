@@ -4,10 +4,10 @@
 #include <netinet/in.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 
 #include "support/errors.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron::runtime::modbus {
 namespace {
@@ -85,13 +85,11 @@ std::optional<Network> Network::parse(std::string_view text) {
   Network network;
   network.address_ = *bytes;
   if (slash != std::string_view::npos) {
-    const std::string_view digits = text.substr(slash + 1);
-    unsigned length = 0;
-    const auto [end, flaw] = std::from_chars(digits.data(), digits.data() + digits.size(), length);
-    if (flaw != std::errc() || end != digits.data() + digits.size() || length > (four ? 32U : 128U)) {
+    const auto length = whole_number(text.substr(slash + 1), 0U, four ? 32U : 128U);
+    if (!length) {
       return std::nullopt;
     }
-    network.length_ = four ? mapped_prefix + length : length;
+    network.length_ = four ? mapped_prefix + *length : *length;
   }
   for (std::size_t i = 0; i < bytes->size(); ++i) {
     if (((*bytes)[i] & ~mask_of_byte(i, network.length_)) != 0) {

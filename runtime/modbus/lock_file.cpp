@@ -5,6 +5,8 @@
 #include <map>
 #include <optional>
 #include <sstream>
+#include <tuple>
+#include <utility>
 
 #include "runtime/modbus/address_text.hpp"
 #include "runtime/modbus/value_bits.hpp"
@@ -40,7 +42,7 @@ std::optional<LockLine> parse_line(const std::string& text, std::uint32_t holdin
 std::vector<LockLine> read_lock(const std::string& file, const std::string& text, std::uint32_t holding_end,
                                 Diagnostics& diagnostics) {
   std::vector<LockLine> lines;
-  std::map<std::string, Place> seen;
+  std::map<std::tuple<std::string, Area, std::string>, Place> seen;
   std::istringstream stream(text);
   std::uint32_t number = 0;
   for (std::string line; std::getline(stream, line);) {
@@ -60,7 +62,7 @@ std::vector<LockLine> read_lock(const std::string& file, const std::string& text
       continue;
     }
     parsed->place = place;
-    const auto [first, is_new] = seen.emplace(parsed->name, place);
+    const auto [first, is_new] = seen.emplace(std::tuple(parsed->name, parsed->at.area, name_of(parsed->type)), place);
     if (!is_new) {
       diagnostics.error(error::point_addressed_twice, place, fmt::format("{} is given a second address.", parsed->name),
                         "keep the line by which clients know the point, and delete the other",

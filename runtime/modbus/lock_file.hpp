@@ -4,6 +4,9 @@
 //   holding 0 real64 HYST.C1
 //   coil 0 boolean task.commit
 //   holding 4.3 boolean READY
+//
+// A name stands there once for each type and area that its point has had. The address of another type or area is kept
+// from all others, and is the point's again with that type or area.
 #pragma once
 
 #include <string>

@@ -98,6 +98,9 @@ class Placer {
             "the end stands for any rest");
       }
     }
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      is_exposed_[i] = is_exposed_[i] && index_.at(points_[i].name) == i;
+    }
   }
 
   void place_given() {
@@ -135,6 +138,7 @@ class Placer {
 
   void place_locked() {
     const std::uint32_t holding_end = size_of(Area::holding_register);
+    const auto by_hand = placed_;
     for (const LockLine& line : read_lock(request_.lock_file, request_.lock_text, holding_end, diagnostics_)) {
       const auto point = index_.find(line.name);
       if (point != index_.end() && is_flawed_[point->second]) {
@@ -142,10 +146,10 @@ class Placer {
       }
       const bool stays = point != index_.end() && is_exposed_[point->second] &&
                          formats_[point->second].type == line.type && fits(point->second, line.at);
-      if (stays && placed_[point->second]) {
+      if (stays && by_hand[point->second]) {
         continue;  // an address given by hand replaces the one in the lock file
       }
-      if (stays) {
+      if (stays && !placed_[point->second]) {
         take(point->second, line.at, line.place);
       } else {
         retire(line);

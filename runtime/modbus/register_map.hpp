@@ -138,7 +138,8 @@ class RegisterMap {
   Diagnostics warnings_;
 };
 
-/// Gives every point its address. Throws InputError HY820 to HY826, HY860 and HY861 with all that is wrong.
+/// Gives every point its address; of points of one name, to the first alone. Throws InputError HY820 to HY826, HY860
+/// and HY861 with all that is wrong.
 [[nodiscard]] RegisterMap make_register_map(std::span<const Point> points, const MapRequest& request);
 
 /// The lock file of a map: a line for each point and for each retired address. It reads back to the same addresses.

@@ -49,8 +49,13 @@ constexpr bool reads(std::uint8_t function) {
 }  // namespace
 
 Responder::Responder(const RegisterMap& map, PointDoor& door, const Identity& identity)
-    : map_(map), door_(door), objects_{identity.vendor, identity.product, identity.revision,
-                                       map.title(),     map.hash(),       std::string(name_of(map.order()))} {
+    : map_(&map), door_(door), objects_{identity.vendor, identity.product, identity.revision} {
+  show(map);
+}
+
+void Responder::show(const RegisterMap& map) {
+  map_ = &map;
+  std::ranges::copy(std::array{map.title(), map.hash(), std::string(name_of(map.order()))}, objects_.begin() + 3);
   for (std::string& object : objects_) {
     object.resize(std::min(object.size(), longest_object));
   }
@@ -115,7 +120,7 @@ Exception Responder::read_bits(Pdu pdu, Area area, Reply& reply) {
   door_.read(now_);
   put(reply, pdu[0]);
   put(reply, static_cast<std::uint8_t>((count + 7) / 8));
-  const MapEntry* entry = map_.find(area, address);
+  const MapEntry* entry = map_->find(area, address);
   std::fill_n(reply.bytes.begin() + 2, (count + 7) / 8, std::uint8_t{0});
   for (std::uint32_t i = 0; i < count; ++i, ++entry) {  // every bit has its entry, so they follow each other
     const auto bit = bits_now(*entry);
@@ -158,7 +163,7 @@ Exception Responder::write_one_coil(Pdu pdu, const Caller& caller, Reply& reply)
   }
   writes_.clear();
   const std::uint64_t bit = word_at(pdu, 3) == 0 ? 0 : 1;
-  if (const auto flaw = collect(*map_.find(Area::coil, address), bit); flaw != Exception::none) {
+  if (const auto flaw = collect(*map_->find(Area::coil, address), bit); flaw != Exception::none) {
     return flaw;
   }
   echo(reply, pdu, 5);
@@ -194,7 +199,7 @@ Exception Responder::write_coils(Pdu pdu, const Caller& caller, Reply& reply) {
     return flaw;
   }
   writes_.clear();
-  const MapEntry* entry = map_.find(Area::coil, address);
+  const MapEntry* entry = map_->find(Area::coil, address);
   for (std::uint32_t i = 0; i < count; ++i, ++entry) {
     const auto bit = static_cast<std::uint64_t>(pdu[6 + i / 8]) >> i % 8 & 1U;
     if (const auto flaw = collect(*entry, bit); flaw != Exception::none) {
@@ -234,7 +239,7 @@ Exception Responder::mask_register(Pdu pdu, const Caller& caller, Reply& reply) 
     return flaw;
   }
   door_.read(now_);
-  const auto entries = map_.covering(Area::holding_register, address);
+  const auto entries = map_->covering(Area::holding_register, address);
   const auto now = register_bits(entries);
   if (!now) {
     return Exception::device_failure;
@@ -302,13 +307,13 @@ Exception Responder::read_files(Pdu pdu, Reply& reply) const {
     const std::size_t count = word_at(rest, 5);
     const std::size_t first = records_of_file * (std::size_t{word_at(rest, 1)} - 1) + record;
     const bool is_there = rest[0] == reference_type && word_at(rest, 1) > 0 && record + count <= records_of_file &&
-                          first + count <= map_.chain().size();
+                          first + count <= map_->chain().size();
     if (!is_there) {
       return Exception::illegal_address;
     }
     put(reply, static_cast<std::uint8_t>(1 + 2 * count));
     put(reply, reference_type);
-    for (const std::uint16_t word : map_.chain().subspan(first, count)) {
+    for (const std::uint16_t word : map_->chain().subspan(first, count)) {
       put_word(reply, word);
     }
   }
@@ -359,9 +364,9 @@ Exception Responder::identify(Pdu pdu, Reply& reply) const {
 
 bool Responder::covered(Area area, std::uint32_t address, std::uint32_t count) const {
   const std::uint32_t end = address + count;
-  const auto chain_end = chain_address + static_cast<std::uint32_t>(map_.chain_registers().size());
+  const auto chain_end = chain_address + static_cast<std::uint32_t>(map_->chain_registers().size());
   for (std::uint32_t at = address; at < end;) {
-    if (const MapEntry* entry = map_.find(area, at)) {
+    if (const MapEntry* entry = map_->find(area, at)) {
       at = entry->at.address + entry->at.count;
     } else if (area == Area::holding_register && at >= chain_address && at < chain_end) {
       at = chain_end;
@@ -398,9 +403,9 @@ std::optional<std::uint64_t> Responder::register_bits(std::span<const MapEntry> 
 
 Exception Responder::put_words(Area area, std::uint32_t address, std::uint32_t count, Reply& reply) {
   for (std::uint32_t at = address; at < address + count;) {
-    const auto entries = map_.covering(area, at);
+    const auto entries = map_->covering(area, at);
     if (entries.empty()) {
-      put_word(reply, map_.chain_registers()[at - chain_address]);
+      put_word(reply, map_->chain_registers()[at - chain_address]);
       ++at;
       continue;
     }
@@ -422,15 +427,15 @@ Exception Responder::writable(Area area, std::uint32_t address, std::uint32_t co
   const std::uint32_t end = address + count;
   bool permitted = true;
   for (std::uint32_t at = address; at < end;) {
-    const auto entries = map_.covering(area, at);
+    const auto entries = map_->covering(area, at);
     if (entries.empty() || entries.front().at.address != at || at + entries.front().at.count > end) {
       return Exception::illegal_address;
     }
     for (const MapEntry& entry : entries) {
-      if (!map_.point_of(entry).writable) {
+      if (!map_->point_of(entry).writable) {
         return Exception::illegal_address;
       }
-      permitted = permitted && caller.rights.write(map_.point_of(entry).right);
+      permitted = permitted && caller.rights.write(map_->point_of(entry).right);
     }
     at += entries.front().at.count;
   }
@@ -440,7 +445,7 @@ Exception Responder::writable(Area area, std::uint32_t address, std::uint32_t co
 Exception Responder::collect_words(std::uint32_t address, Pdu data) {
   const auto end = address + static_cast<std::uint32_t>(data.size() / 2);
   for (std::uint32_t at = address; at < end;) {
-    const auto entries = map_.covering(Area::holding_register, at);
+    const auto entries = map_->covering(Area::holding_register, at);
     const std::uint32_t width = entries.front().at.count;
     std::array<std::uint16_t, 4> words{};
     for (std::uint32_t i = 0; i < width; ++i) {
@@ -470,7 +475,7 @@ Exception Responder::collect_register(std::span<const MapEntry> entries, std::ui
 }
 
 Exception Responder::collect(const MapEntry& entry, std::uint64_t bits) {
-  const Point& point = map_.point_of(entry);
+  const Point& point = map_->point_of(entry);
   const auto value = taken(bits, entry.format, point.low, point.high);
   if (!value || !holds(RegisterType(point.type), *value)) {
     return Exception::illegal_value;

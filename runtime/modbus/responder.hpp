@@ -78,9 +78,11 @@ struct Reply {
 
 class Responder {
  public:
-  /// Map and door must outlive the responder. The map is of the door's points.
+  /// Map and door must outlive the responder. The map is of the door's points, and of its further places.
   Responder(const RegisterMap& map, PointDoor& door, const Identity& identity);
 
+  /// From the next request on, another map of points that the door has; it must outlive the responder.
+  void show(const RegisterMap& map);
   /// The answer to a PDU of at least one byte.
   [[nodiscard]] Reply answer(std::span<const std::uint8_t> pdu, const Caller& caller);
 
@@ -119,7 +121,7 @@ class Responder {
   Exception collect(const MapEntry& entry, std::uint64_t bits);
   Exception hand_over(const Caller& caller, Reply& reply);
 
-  const RegisterMap& map_;
+  const RegisterMap* map_;
   PointDoor& door_;
   std::array<std::string, 6> objects_;  ///< of function 43/14, as object_ids
   Snapshot now_;

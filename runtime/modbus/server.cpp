@@ -42,9 +42,10 @@ class Server::Loop {
   Loop(RegisterMap map, PointDoor& door, ServerOptions options)
       : tls_(std::move(options.tls)),
         options_(std::move(options)),
-        map_(std::move(map)),
+        map_(std::make_shared<const RegisterMap>(std::move(map))),
+        served_(map_.load()),
         door_(door),
-        responder_(map_, door, options_.identity),
+        responder_(*served_, door, options_.identity),
         allow_(networks_of(options_.allow, options_.place)),
         heartbeat_(options_.heartbeat),
         stop_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
@@ -71,8 +72,12 @@ class Server::Loop {
   }
 
   void renew(std::shared_ptr<const TlsContext> tls) { tls_.store(std::move(tls)); }
+  void show(RegisterMap map) {
+    map_.store(std::make_shared<const RegisterMap>(std::move(map)));
+    has_other_map_.store(true);
+  }
   [[nodiscard]] std::uint16_t port() const { return listener_ ? listener_->port() : std::uint16_t{0}; }
-  [[nodiscard]] const RegisterMap& map() const { return map_; }
+  [[nodiscard]] std::shared_ptr<const RegisterMap> map() const { return map_.load(); }
   [[nodiscard]] const ServerCounters& counters() const { return counters_; }
 
  private:
@@ -106,6 +111,10 @@ class Server::Loop {
     while (true) {
       const int count = ::epoll_wait(epoll_.number(), events.data(), static_cast<int>(events.size()), wait_time());
       const Instant now = std::chrono::steady_clock::now();
+      if (has_other_map_.load(std::memory_order_relaxed) && has_other_map_.exchange(false)) {
+        const auto before = std::exchange(served_, map_.load());
+        responder_.show(*served_);
+      }
       for (int i = 0; i < count; ++i) {
         const epoll_event& event = events.at(static_cast<std::size_t>(i));
         if (event.data.u64 == stop_mark) {
@@ -396,7 +405,7 @@ class Server::Loop {
       options_.tell(fmt::format(
           "{} is beyond what its registers hold, and clients read the nearest value that they do. Give it another type "
           "or scale under [registers].",
-          map_.points()[responder_.saturated_point()].name));
+          served_->points()[responder_.saturated_point()].name));
       told_saturated_ = now;
     }
     counters_.saturated.store(saturated, std::memory_order_relaxed);
@@ -427,7 +436,9 @@ class Server::Loop {
 
   std::atomic<std::shared_ptr<const TlsContext>> tls_;
   const ServerOptions options_;  ///< but for TLS, which is renewed
-  const RegisterMap map_;
+  std::atomic<std::shared_ptr<const RegisterMap>> map_;
+  std::shared_ptr<const RegisterMap> served_;  ///< in this thread
+  std::atomic<bool> has_other_map_{false};
   PointDoor& door_;
   Responder responder_;
   const std::vector<Network> allow_;
@@ -459,10 +470,14 @@ void Server::renew(std::shared_ptr<const TlsContext> tls) {
   loop_->renew(std::move(tls));
 }
 
+void Server::show(RegisterMap map) {
+  loop_->show(std::move(map));
+}
+
 std::uint16_t Server::port() const {
   return loop_->port();
 }
-const RegisterMap& Server::map() const {
+std::shared_ptr<const RegisterMap> Server::map() const {
   return loop_->map();
 }
 

@@ -86,8 +86,10 @@ class Server {
 
   /// Connections from now on are served by this certificate; those that are open go on. From any thread.
   void renew(std::shared_ptr<const TlsContext> tls);
+  /// From the next request on, another map of points that the door has. From any thread.
+  void show(RegisterMap map);
   [[nodiscard]] std::uint16_t port() const;
-  [[nodiscard]] const RegisterMap& map() const;
+  [[nodiscard]] std::shared_ptr<const RegisterMap> map() const;
   [[nodiscard]] ServerStatus status() const;
 
  private:

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "runtime/task/staged_parameters.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -113,9 +114,8 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   }
 }
 
-/// Whole, or real: infinite, too.
-template <class Number>
-bool read_number(std::string_view text, Number& number) {
+/// Infinite, too.
+bool read_real(std::string_view text, double& number) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && end == text.data() + text.size();
 }
@@ -123,16 +123,15 @@ bool read_number(std::string_view text, Number& number) {
 bool read_line(std::string_view line, std::size_t state_size, KeptLayout& layout) {
   const std::vector<std::string_view> cells = cells_of(line);
   if (cells[0] == "t" && cells.size() == 2) {
-    std::size_t period = 0;
-    const bool read = read_number(cells[1], period);
-    layout.period = static_cast<std::int64_t>(period);
-    return read;
+    const auto period = whole_number<std::int64_t>(cells[1], 0);
+    layout.period = period.value_or(0);
+    return period.has_value();
   }
   if ((cells[0] == "p" || cells[0] == "i") && cells.size() == 7) {
     const auto type = type_of(cells[2]);
     double low = 0.0;
     double high = 0.0;
-    const bool is_read = type && read_number(cells[4], low) && read_number(cells[5], high);
+    const bool is_read = type && read_real(cells[4], low) && read_real(cells[5], high);
     (cells[0] == "p" ? layout.parameters : layout.inputs)
         .push_back({.name = std::string(cells[1]),
                     .type = type.value_or(PointType::real64),
@@ -147,11 +146,14 @@ bool read_line(std::string_view line, std::size_t state_size, KeptLayout& layout
   }
   const auto type = type_of(cells[3]);
   StateField field{.name = std::string(cells[1]), .block = std::string(cells[2]), .unit = std::string(cells[6])};
-  if (!type || !read_number(cells[4], field.length) || !read_number(cells[5], field.offset) ||
-      field.offset > state_size || field.length > (state_size - field.offset) / about(*type).size) {
+  const auto length = whole_number<std::size_t>(cells[4]);
+  const auto offset = whole_number<std::size_t>(cells[5], 0, state_size);
+  if (!type || !length || !offset || *length > (state_size - *offset) / about(*type).size) {
     return false;
   }
   field.type = *type;
+  field.length = *length;
+  field.offset = *offset;
   layout.state.push_back(std::move(field));
   return true;
 }

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -19,17 +20,6 @@ namespace {
 
 std::string problem(const std::filesystem::path& path) {
   return path.string() + ": " + std::strerror(errno);
-}
-
-bool write_all(int file, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const auto count = ::write(file, bytes.data(), bytes.size());
-    if (count < 0 && errno != EINTR) {
-      return false;
-    }
-    bytes = bytes.subspan(count < 0 ? 0 : static_cast<std::size_t>(count));
-  }
-  return true;
 }
 
 /// Gives a file a second name, the first that is not taken. Empty, or why it failed.
@@ -103,7 +93,8 @@ std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> byt
   const auto fresh = std::filesystem::path(path).concat(".new");
   {
     const Descriptor file(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
-    if (file.number() < 0 || !write_all(file.number(), bytes) || fsync(file.number()) != 0) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (file.number() < 0 || !write_all(file.number(), text) || fsync(file.number()) != 0) {
       return problem(fresh);
     }
   }

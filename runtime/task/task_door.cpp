@@ -115,17 +115,38 @@ void TaskDoor::add_command(const char* name, WriteRight right, const char* meani
        .right = right});
 }
 
-void TaskDoor::read(Snapshot& into) {
-  into.values.resize(points_.size());
-  const bool any = snapshots_.read(into.cycle, into.values);
-  const std::lock_guard lock(servers_);
-  if (!any) {
-    std::ranges::fill(into.values, 0.0);
-    std::ranges::copy(wanted_.inputs, into.values.begin());
+TaskDoor::Row TaskDoor::read_row(std::uint64_t& cycle) {
+  const std::size_t common = points_.size() + inputs_;
+  row_.assign(live_ ? live_->width() : common + view_->inner.size(), not_a_number);
+  if (!snapshots_.read(cycle, std::span(row_).first(live_ ? common : row_.size()))) {
+    std::ranges::fill(row_, 0.0);
+    std::ranges::copy(wanted_.inputs, row_.begin());
+    return Row::none;
   }
-  for (std::size_t i = 0; i < parameter_count_; ++i) {
-    if (!any || plant_.is_staged(i)) {
-      into.values[first_parameter_ + i] = plant_.staged()[i];
+  if (live_) {
+    newer_.resize(row_.size());
+    std::uint64_t newer = 0;
+    // A row may be there from the time before the version was left.
+    if (!live_->read(newer, newer_) || newer < cycle) {
+      return Row::points;
+    }
+    std::swap(row_, newer_);
+    cycle = newer;
+  }
+  return Row::whole;
+}
+
+void TaskDoor::read(Snapshot& into) {
+  const std::lock_guard lock(servers_);
+  const Row row = read_row(into.cycle);
+  into.values.assign(row_.begin(), row_.begin() + static_cast<std::ptrdiff_t>(points_.size()));
+  for (std::size_t i = 0; i < further_.size(); ++i) {
+    into.values.push_back(row == Row::whole && further_[i] ? row_[*further_[i]]
+                                                           : plant_.committed()[parameter_count_ + i]);
+  }
+  for (std::size_t i = 0; i < plant_.staged().size(); ++i) {
+    if (row == Row::none || plant_.is_staged(i)) {
+      into.values[place_of(i)] = plant_.staged()[i];
     }
   }
 }
@@ -137,12 +158,7 @@ std::shared_ptr<const LiveView> TaskDoor::view() const {
 
 void TaskDoor::read_live(LiveValues& into) {
   const std::lock_guard lock(servers_);
-  row_.resize(live_ ? live_->width() : points_.size() + inputs_ + view_->inner.size());
-  const bool any = live_ ? live_->read(into.cycle, row_) : snapshots_.read(into.cycle, row_);
-  if (!any) {
-    std::ranges::fill(row_, 0.0);
-    std::ranges::copy(wanted_.inputs, row_.begin());
-  }
+  const Row row = read_row(into.cycle);
   into.version = view_->version;
   into.values.resize(view_->points.size());
   into.staged.clear();
@@ -150,7 +166,8 @@ void TaskDoor::read_live(LiveValues& into) {
   for (std::size_t i = 0; i < into.values.size(); ++i) {
     into.values[i] = row_[columns_[i]];
     const auto parameter = parameter_at(view_->places[i]);
-    if (parameter && !any) {
+    const bool is_there = row == Row::whole || (row == Row::points && view_->places[i] < points_.size());
+    if (parameter && !is_there) {
       into.values[i] = page_.committed()[*parameter];
     }
     if (parameter && page_.is_staged(*parameter)) {
@@ -287,6 +304,7 @@ void TaskDoor::order_forces(std::vector<std::optional<double>> forces) {
   }
   wanted_.forces = std::move(forces);
   ++wanted_.forcing;
+  was_forced_.store(true, std::memory_order_relaxed);
   order();
 }
 
@@ -298,11 +316,8 @@ std::vector<std::optional<double>> TaskDoor::forces_now() const {
 
 std::vector<std::string> TaskDoor::forced() {
   std::vector<std::string> texts;
-  {
-    const std::lock_guard lock(servers_);
-    if (wanted_.forcing == 0) {
-      return texts;  // as most tasks for ever, and this is asked all the time
-    }
+  if (!was_forced_.load(std::memory_order_relaxed)) {
+    return texts;  // as most tasks for ever, and this is asked all the time: without a lock
   }
   LiveValues now;
   read_live(now);
@@ -325,6 +340,19 @@ void TaskDoor::hold_commits(bool held) {
   commits_are_held_ = held;
 }
 
+std::vector<Point> TaskDoor::points_of(const RunningVersion& version) const {
+  const std::vector<ProgramSignal>& own = version.program.shape().parameters;
+  const std::lock_guard lock(servers_);
+  const std::size_t all = std::max(version.places.size(), judged_by_.parameters.size());
+  std::vector<Point> points = points_;
+  points.resize(points_.size() + all - parameter_count_);
+  for (std::size_t i = 0; i < all; ++i) {
+    const auto place = i < version.places.size() ? version.places[i] : std::nullopt;
+    points[place_of(i)] = point_of(place ? own[*place] : judged_by_.parameters[i], PointKind::parameter, true);
+  }
+  return points;
+}
+
 std::shared_ptr<LiveRow> TaskDoor::live_row(const RunningVersion& version) const {
   return std::make_shared<LiveRow>(points_.size() + inputs_, version.program.shape().inner.size(),
                                    further_parameters(version, parameter_count_));
@@ -337,6 +365,7 @@ void TaskDoor::make_view(const RunningVersion& version) {
   view->version = version.number;
   view->picture = shape.picture;
   columns_.clear();
+  further_.assign(gone_.size() - parameter_count_, std::nullopt);
   const auto show = [&](Point point, std::size_t place, std::size_t column) {
     view->points.push_back(std::move(point));
     view->places.push_back(place);
@@ -353,6 +382,7 @@ void TaskDoor::make_view(const RunningVersion& version) {
     if (i + 1 == first_parameter_ + parameter_count_) {
       for (std::size_t own = parameter_count_; own < gone_.size(); ++own) {
         if (!gone_[own]) {
+          further_[own - parameter_count_] = further;
           show(point_of(judged_by_.parameters[own], PointKind::parameter, true), place_of(own), further++);
         }
       }
@@ -437,10 +467,10 @@ void TaskDoor::publish(const StepProgram& program, std::span<const double> input
     *at++ = i < forces.size() && forces[i] ? 1.0 : 0.0;
   }
   program.inner_values(std::span(at, published_.end()));
-  snapshots_.publish(statistics.run, published_);
-  if (live.row != nullptr) {
+  if (live.row != nullptr) {  // before the common one: who has that finds this one at least as new
     live.row->publish(statistics.run, published_, *live.program);
   }
+  snapshots_.publish(statistics.run, published_);
   for (SampleTap* const tap : taps_) {
     tap->offer(statistics.run, statistics.elapsed, published_);
   }

@@ -71,6 +71,9 @@ class TaskDoor final : public PointDoor {
   // For an online change, from a thread beside the cyclic one:
   /// While it is under way no set of parameters is committed, which would be judged by the version that goes.
   void hold_commits(bool held);
+  /// points() as a version has them, by their places: their ranges are the version's, and behind them are the
+  /// parameters that came with this version or any before it. A parameter that the version has not stays as it was.
+  [[nodiscard]] std::vector<Point> points_of(const RunningVersion& version) const;
   /// A row for the values of a version of the diagram, which publish() fills while it runs.
   [[nodiscard]] std::shared_ptr<LiveRow> live_row(const RunningVersion& version) const;
   /// Another version counts. Sets are judged by it from now on, and the live page sees it. What was staged stays so; a
@@ -91,6 +94,9 @@ class TaskDoor final : public PointDoor {
 
  private:
   enum class Command : std::uint8_t { commit, discard, reset, heartbeat };
+  /// What of a row is there: nothing before the first cycle; the points alone, where a version has only just taken
+  /// over.
+  enum class Row : std::uint8_t { none, points, whole };
 
   void add(Point point) { points_.push_back(std::move(point)); }
   void add_command(const char* name, WriteRight right, const char* meaning);
@@ -98,6 +104,8 @@ class TaskDoor final : public PointDoor {
                                       StagedParameters& others);
   [[nodiscard]] std::optional<std::size_t> parameter_at(std::size_t place) const;
   [[nodiscard]] std::size_t place_of(std::size_t parameter) const;
+  /// Into row_, the newest row of the version that runs.
+  [[nodiscard]] Row read_row(std::uint64_t& cycle);
   void make_view(const RunningVersion& version);
   [[nodiscard]] std::vector<std::optional<double>> forces_now() const;
   void order_forces(std::vector<std::optional<double>> forces);
@@ -116,6 +124,7 @@ class TaskDoor final : public PointDoor {
   std::atomic<std::uint16_t> shortages_{0};
 
   std::atomic<std::uint64_t> ended_forcing_{0};
+  std::atomic<bool> was_forced_{false};
 
   mutable std::mutex servers_;  ///< between servers; the cyclic thread never takes it
   ProgramShape judged_by_;      ///< the parameters by place, as the version judges them which runs
@@ -126,8 +135,11 @@ class TaskDoor final : public PointDoor {
   StagedParameters page_;
   std::shared_ptr<const LiveView> view_;
   std::vector<std::size_t> columns_;  ///< by point of the view: of a published row
-  std::shared_ptr<LiveRow> live_{};   ///< of the version that runs; none of the first
-  std::vector<double> row_;           ///< read by the live page
+  /// By parameter that came with an online change: the column; none where the version that runs has it not.
+  std::vector<std::optional<std::size_t>> further_{};
+  std::shared_ptr<LiveRow> live_{};  ///< of the version that runs; none of the first
+  std::vector<double> row_;          ///< read last
+  std::vector<double> newer_;        ///< the same, while it is not known to be the newer one
   TaskOrders wanted_;
   Latest<TaskOrders> orders_;
 };

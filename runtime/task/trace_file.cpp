@@ -1,9 +1,10 @@
 #include "runtime/task/trace_file.hpp"
 
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstring>
+
+#include "support/whole_number.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -25,12 +26,6 @@ std::vector<TraceColumn> columns_of(const std::vector<ProgramSignal>& signals) {
   return columns;
 }
 
-template <class T>
-bool read_number(std::string_view text, T& number) {
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return problem == std::errc{} && end == text.data() + text.size();
-}
-
 /// One line of the head; false where it has no meaning.
 bool read_line(std::string_view line, TraceHead& head) {
   const auto space = line.find(' ');
@@ -41,9 +36,13 @@ bool read_line(std::string_view line, TraceHead& head) {
   } else if (word == "layout") {
     head.layout = rest;
   } else if (word == "period") {
-    return read_number(rest, head.period) && head.period > 0;
+    const auto period = whole_number<std::int64_t>(rest, 1);
+    head.period = period.value_or(0);
+    return period.has_value();
   } else if (word == "state") {
-    return read_number(rest, head.state_size);
+    const auto size = whole_number<std::size_t>(rest);
+    head.state_size = size.value_or(0);
+    return size.has_value();
   } else if (word == "input" || word == "output" || word == "parameter") {
     const auto end = rest.find(' ');
     TraceColumn column{.name = std::string(rest.substr(0, end)),

@@ -4,12 +4,12 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
 #include "runtime/modbus/allow_list.hpp"
 #include "support/errors.hpp"
 #include "support/text_file.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron::runtime::web {
 namespace {
@@ -33,13 +33,6 @@ Parts parts_of(std::string_view text) {
   }
   const auto colon = text.find(':');
   return colon == std::string_view::npos ? Parts{text, {}} : Parts{text.substr(0, colon), text.substr(colon + 1)};
-}
-
-std::optional<std::uint16_t> port_of(std::string_view text) {
-  std::uint16_t port = 0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), port);
-  const bool whole = fault == std::errc{} && end == text.data() + text.size() && !text.empty();
-  return whole ? std::optional(port) : std::nullopt;
 }
 
 /// Every character of what was given is looked at, whether it fits or not. No text is an empty token.
@@ -72,7 +65,7 @@ bool is_loopback_address(const modbus::AddressBytes& bytes) {
 Endpoint parse_endpoint(std::string_view text) {
   const Parts parts = parts_of(text);
   const auto bytes = modbus::address_bytes(parts.address);
-  const auto port = port_of(parts.port);
+  const auto port = whole_number<std::uint16_t>(parts.port);
   if (!bytes || !port) {
     throw InputError(error::malformed_web_address, {}, fmt::format("{} is no numeric address with a port.", text),
                      "write 127.0.0.1:8080, or [::1]:8080 for IPv6.");
@@ -139,7 +132,7 @@ bool may_read(const Access& access, std::string_view authorization) {
 
 bool is_loopback_host(std::string_view host) {
   const Parts parts = parts_of(host);
-  if (!parts.port.empty() && !port_of(parts.port)) {
+  if (!parts.port.empty() && !whole_number<std::uint16_t>(parts.port)) {
     return false;
   }
   const auto bytes = modbus::address_bytes(parts.address);

@@ -60,7 +60,7 @@ TEST_P(JavaScript, ReadsAndWritesEveryPoint) {
   }
   const Server server(make_register_map(door.points(), {.title = "T", .order = order}), door, {.port = 0});
   const test::ScratchFolder folder;
-  const std::string map = folder.write("map.json", as_json(server.map()));
+  const std::string map = folder.write("map.json", as_json(*server.map()));
   const std::string command =
       "NODE_PATH='" + modules + "' timeout 120 node " HYSTERON_SOURCE_DIR "/tests/clients/interop.js points " + client +
       " " + std::to_string(server.port()) + " '" + map + "' > '" + (folder / "out") + "' 2> '" + (folder / "err") + "'";

@@ -170,11 +170,15 @@ class Schemas(unittest.TestCase):
 
     def test_online_change(self):
         (self.folder / "online.toml").write_text('[task]\nscheduling = "other"\nlock_memory = false\n[outputs.Y]\nsafe = 0.0\n'
-                                                 '[online_change]\nsocket = "online-change.socket"\n')
-        command = [TOOL, "serve", "plant.st", "--config", "online.toml", "--engine", "interpreter"]
+                                                 '[modbus]\nport = 0\n[online_change]\nsocket = "online-change.socket"\n')
+        (self.folder / "changed.st").write_text(PLANT)
+        command = [TOOL, "serve", "changed.st", "--config", "online.toml", "--engine", "interpreter"]
         with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as task:
             try:
                 self.assertIn("online change on", task.stdout.readline())
+                # In front of the others, so that a restart without a lock file moves them.
+                (self.folder / "changed.st").write_text(PLANT.replace("    AMP :", "    AHEAD : HY_GAIN := (K := 1.0);\n    AMP :")
+                                                        .replace("AMP(XIN := U)", "AHEAD(XIN := U);\n  AMP(XIN := AHEAD.XOUT)"))
                 self.holds("online-change", self.printed("online-change", "online.toml", "--check", "--json"),
                            self.printed("online-change", "online.toml", "--json"))
             finally:

@@ -1,7 +1,12 @@
 // Faults are said once each, with what they are of, and no faster than a reader can follow.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 
 #include "runtime/host/notices.hpp"
 
@@ -73,6 +78,25 @@ TEST(AbsenceNotices, AreSaidOnceAndWhenTheDeviceAnswers) {
   EXPECT_TRUE(notices.lines({"stage"}, start + seconds(6)).empty());
   EXPECT_EQ(notices.lines({}, start + seconds(7)), std::vector<std::string>{"stage answers, and counts from now on."});
   EXPECT_TRUE(notices.lines({}, start + seconds(8)).empty());
+}
+
+/// What is connected to the journal has its priority before it; another stream of the same process has not.
+TEST(Notices, ALineInTheJournalHasItsPriority) {
+  const auto told = [](bool is_in_journal) {
+    testing::internal::CaptureStderr();
+    struct stat error {};
+    EXPECT_EQ(::fstat(STDERR_FILENO, &error), 0);
+    ::setenv("JOURNAL_STREAM", fmt::format("{}:{}", error.st_dev, error.st_ino + (is_in_journal ? 0 : 1)).c_str(), 1);
+    tell("Modbus", "one");
+    tell("Fault", "two", Weight::error);
+    tell("Fault", "none any more", Weight::notice);
+    (void)std::fputs(weighted("error: a\n\nmend: b", Weight::error).c_str(), stderr);
+    ::unsetenv("JOURNAL_STREAM");
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(weighted("HY803 error: one\nmend: two", Weight::error), "HY803 error: one\nmend: two");
+  EXPECT_EQ(told(true), "<4>Modbus: one\n<3>Fault: two\n<5>Fault: none any more\n<3>error: a\n<3>\n<3>mend: b");
+  EXPECT_EQ(told(false), "Modbus: one\nFault: two\nFault: none any more\nerror: a\n\nmend: b");
 }
 
 TEST(ForceNotices, AreALineWhereTheSetChangedAndOneASecondAtTheMost) {

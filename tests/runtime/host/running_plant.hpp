@@ -67,10 +67,17 @@ class Plant {
     retainer_ = std::make_unique<Retainer>(*files_, program_, Recovery{}, state_of(program_));
     trace_ = std::make_unique<Trace>(TraceSettings{.file = folder / "run.trace", .waits = true}, program_);
   }
+  /// Its registers, on a port that is free.
+  void serve(ModbusConfig modbus) {
+    modbus.port = 0;
+    run_file_.task = plant_settings();
+    run_file_.modbus = std::move(modbus);
+    registers_ = std::make_unique<ServedMap>(run_file_, program_.shape().name, task_, nullptr);
+  }
   void start() {
     task_.attach({.retainer = retainer_.get(), .trace = trace_.get(), .changes = &program_});
     thread_ = std::thread([this] { (void)task_.run(clock_, stop_); });
-    change_.begin(retainer_.get(), trace_.get());
+    change_.begin(retainer_.get(), trace_.get(), registers_.get());
     run(20);
   }
   /// So many cycles more.
@@ -99,6 +106,7 @@ class Plant {
   [[nodiscard]] Task& task() { return task_; }
   [[nodiscard]] PacedClock& clock() { return clock_; }
   [[nodiscard]] RetainFolder& files() { return *files_; }
+  [[nodiscard]] modbus::Server& server() { return registers_->server(); }
 
  private:
   std::unique_ptr<RetainFolder> files_{};
@@ -108,6 +116,8 @@ class Plant {
   PacedClock clock_;
   Task task_;
   OnlineChange change_;
+  RunConfig run_file_{};
+  std::unique_ptr<ServedMap> registers_{};
   std::atomic<bool> stop_{false};
   std::thread thread_{};
 };

@@ -153,7 +153,7 @@ TEST(Device, EveryTypeAndWordOrderOverTcp) {
   for (const WordOrder order : word_orders) {
     test::MemoryDoor door(test::points_of_every_type());
     const Server server(make_register_map(door.points(), {.title = "T", .order = order}), door, {.port = 0});
-    expect_values_to_cross({.link = TcpLink{.port = server.port()}, .period = milliseconds(5)}, server.map(), door);
+    expect_values_to_cross({.link = TcpLink{.port = server.port()}, .period = milliseconds(5)}, *server.map(), door);
   }
 }
 

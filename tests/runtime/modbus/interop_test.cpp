@@ -54,7 +54,7 @@ class Interoperation : public ::testing::TestWithParam<WordOrder> {
 };
 
 TEST_P(Interoperation, Pymodbus) {
-  const std::string file = folder_.write("map.json", as_json(server_.map()));
+  const std::string file = folder_.write("map.json", as_json(*server_.map()));
   std::istringstream lines(output_of("/usr/bin/python3 " HYSTERON_SOURCE_DIR
                                      "/tests/runtime/modbus/interop_pymodbus.py " +
                                      std::to_string(server_.port()) + " " + file));
@@ -79,8 +79,9 @@ TEST_P(Interoperation, Mbpoll) {
   const std::string order = low_word_first(GetParam()) ? "" : "-B ";
   for (const auto& [name, type] :
        {std::pair{"R32.W", "4:float"}, {"I32.W", "4:int"}, {"I16.W", "4"}, {"R32.R", "3:float"}, {"I32.R", "3:int"}}) {
-    for (const MapEntry& entry : server_.map().entries()) {
-      if (server_.map().point_of(entry).name == name) {
+    const auto map = server_.map();
+    for (const MapEntry& entry : map->entries()) {
+      if (map->point_of(entry).name == name) {
         const std::string text =
             output_of("mbpoll -q -1 -0 -m tcp -a 1 " + order + "-p " + std::to_string(server_.port()) + " -t " + type +
                       " -r " + std::to_string(entry.at.address) + " 127.0.0.1");

@@ -83,7 +83,8 @@ inline LateNetwork serve_before_the_network() {
     return LateNetwork::never_listened;
   }
   door.set(0, 4.5);
-  const auto& entry = server.map().entries()[0];
+  const auto map = server.map();
+  const auto& entry = map->entries()[0];
   const modbus::Device client({.link = modbus::TcpLink{.host = late_address, .port = 1502},
                                .values = {{.at = entry.at, .format = entry.format}},
                                .response = std::chrono::seconds(2)});

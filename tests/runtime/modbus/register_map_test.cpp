@@ -112,6 +112,44 @@ TEST(RegisterMap, APointThatChangedItsTypeGetsANewAddress) {
   EXPECT_EQ(map.find(Area::holding_register, 0), nullptr);
 }
 
+/// What was retired under the name of a point that is there is read back, and is the point's again with the old type.
+TEST(RegisterMap, ALockFileHasANameOnceForEachTypeAndArea) {
+  const auto after = [](const Point& point, const std::string& lock) {
+    const RegisterMap map =
+        make_register_map(std::vector<Point>{point, {.name = "Z", .type = PointType::real32, .writable = true}},
+                          {.title = "T", .lock_file = "t.lock", .lock_text = lock});
+    const RegisterMap again =
+        make_register_map(map.points(), {.title = "T", .lock_file = "t.lock", .lock_text = lock_text(map)});
+    EXPECT_EQ(lock_text(again), lock_text(map)) << "a start that changes nothing";
+    return map;
+  };
+  const Point narrow{.name = "X", .type = PointType::real32, .writable = true};
+  const Point wide{.name = "X", .type = PointType::real64, .writable = true};
+  const RegisterMap first = after(narrow, "");
+  const RegisterMap second = after(wide, lock_text(first));
+  const Stretch old = addresses(first).at("X");
+  EXPECT_EQ(second.find(old.area, old.address), nullptr) << "nobody has the address meanwhile";
+  EXPECT_EQ(addresses(second).at("Z"), addresses(first).at("Z"));
+  EXPECT_EQ(addresses(after(narrow, lock_text(second))).at("X"), old);
+  EXPECT_EQ(addresses(after(wide, lock_text(after(narrow, lock_text(second))))), addresses(second));
+
+  const Point read_only{.name = "X", .type = PointType::real64};
+  const RegisterMap read = after(read_only, "");
+  const RegisterMap written = after(wide, lock_text(read));
+  EXPECT_EQ(addresses(written).at("X").area, Area::holding_register);
+  EXPECT_EQ(written.find(Area::input_register, addresses(read).at("X").address), nullptr);
+  EXPECT_EQ(addresses(after(read_only, lock_text(written))).at("X"), addresses(written).at("X"));
+}
+
+TEST(RegisterMap, OfPointsOfOneNameTheFirstAloneHasAnAddress) {
+  const std::vector<Point> points{{.name = "K", .type = PointType::real64, .unit = "ms", .writable = true},
+                                  {.name = "K", .type = PointType::real64, .unit = "s", .writable = true}};
+  const RegisterMap map = make_register_map(points, {.title = "T"});
+  ASSERT_EQ(map.entries().size(), 1U);
+  EXPECT_EQ(map.entries()[0].point, 0U);
+  EXPECT_EQ(make_register_map(points, {.title = "T", .expose = {"K"}}).entries().size(), 1U);
+}
+
 TEST(RegisterMap, TheHashIsOfAllThatAClientReliesOn) {
   const auto points = test::points_of_every_type();
   const MapRequest request{.title = "T"};

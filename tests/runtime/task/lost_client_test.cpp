@@ -48,8 +48,9 @@ class ServedTask {
   /// A client that writes a point again and again for as long as it lives.
   [[nodiscard]] std::unique_ptr<modbus::Device> client(std::string_view name, double number) {
     modbus::RemoteValue value{.written = true};
-    for (const modbus::MapEntry& entry : server_.map().entries()) {
-      if (server_.map().point_of(entry).name == name) {
+    const auto map = server_.map();
+    for (const modbus::MapEntry& entry : map->entries()) {
+      if (map->point_of(entry).name == name) {
         value.at = entry.at;
         value.format = entry.format;
       }

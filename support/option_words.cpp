@@ -57,16 +57,16 @@ bool is_small(char c) {
 }
 
 /// A word of a text from an offset on, without the signs that end a sentence or a part of one.
-struct Word {
+struct SentenceWord {
   std::string text{};
   std::size_t end = 0;  ///< behind it
   bool is_quoted = false;
 };
 
-Word quoted_word(std::string_view text, std::size_t begin) {
+SentenceWord quoted_word(std::string_view text, std::size_t begin) {
   constexpr std::string_view inner_quote = "'\\''";
   const char quote = text[begin];
-  Word word{.is_quoted = true};
+  SentenceWord word{.is_quoted = true};
   std::size_t at = begin + 1;
   while (at < text.size()) {
     if (quote == '\'' && text.substr(at).starts_with(inner_quote)) {
@@ -82,7 +82,7 @@ Word quoted_word(std::string_view text, std::size_t begin) {
   return {.end = begin};
 }
 
-Word plain_word(std::string_view text, std::size_t begin) {
+SentenceWord plain_word(std::string_view text, std::size_t begin) {
   auto end = std::min(text.find(' ', begin), text.size());
   const auto ends_a_part = [&] {
     const char last = text[end - 1];
@@ -97,18 +97,18 @@ Word plain_word(std::string_view text, std::size_t begin) {
 }
 
 /// The value behind an option that ends at an offset; with the same end where there is none.
-Word value_behind(const LibraryOption& option, std::string_view text, std::size_t end) {
+SentenceWord value_behind(const LibraryOption& option, std::string_view text, std::size_t end) {
   if (option.form == OptionForm::Flag || option.form == OptionForm::None || end + 1 >= text.size() ||
       text[end] != ' ') {
     return {.end = end};
   }
   const bool is_quoted = text[end + 1] == '\'' || text[end + 1] == '"';
-  Word word = is_quoted ? quoted_word(text, end + 1) : plain_word(text, end + 1);
+  SentenceWord word = is_quoted ? quoted_word(text, end + 1) : plain_word(text, end + 1);
   const bool is_prose =
       std::ranges::all_of(word.text, is_small) && !option.any_value && !is_one_of(word.text, std::span(small_values));
   const bool is_value = !word.text.empty() && (word.is_quoted || !is_prose) &&
                         (option.form != OptionForm::Pair || word.text.find('=') != std::string::npos);
-  return is_value ? word : Word{.end = end};
+  return is_value ? word : SentenceWord{.end = end};
 }
 
 /// As both languages write it.
@@ -196,7 +196,7 @@ std::string in_words_of(Caller caller, std::string_view text) {
       result += text[at++];
       continue;
     }
-    const Word value = value_behind(*option, text, end);
+    const SentenceWord value = value_behind(*option, text, end);
     result += reworded(*option, value.text, caller, at == 0 || text.substr(0, at).ends_with(". "));
     at = value.end;
   }

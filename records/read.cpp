@@ -20,6 +20,7 @@
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
+#include "support/option_words.hpp"
 #include "support/rounded_text.hpp"
 #include "support/text_file.hpp"
 
@@ -131,8 +132,9 @@ std::optional<Diagnostic> fault_of(const Table& table, std::size_t index) {
       return Diagnostic{.number = error::duplicate_column,
                         .place = column.place,
                         .cause = fmt::format("There are two columns {}.", column.name),
-                        .mend = fmt::format("say which by its number: --column {0}={1} or --column {0}={2}.",
-                                            column.name, std::min(i, index) + 1, std::max(i, index) + 1)};
+                        .mend = fmt::format("say which by its number: --column {} or --column {}.",
+                                            option_value(fmt::format("{}={}", column.name, std::min(i, index) + 1)),
+                                            option_value(fmt::format("{}={}", column.name, std::max(i, index) + 1)))};
     }
   }
   if (column.fault) {
@@ -181,7 +183,8 @@ void refuse_inventing(const Table& table, const Times& times, double sample_time
                   rounded_text(sample_time)),
       !mistaken ? fmt::format("let the diagram run at the rate of the record, or state its time, as --rate {}Hz.",
                               rounded_text(1.0 / sample_time))
-                : fmt::format("if its times are in {0}, say so: --time {1}[{0}].", mistaken->unit, times.column));
+                : fmt::format("if its times are in {}, say so: --time {}.", mistaken->unit,
+                              option_value(fmt::format("{}[{}]", times.column, mistaken->unit))));
 }
 
 /// What stands in these rows, which rise, is taken away.

@@ -12,6 +12,7 @@
 #include "support/element_name.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
+#include "support/option_words.hpp"
 
 namespace hysteron::records {
 
@@ -82,14 +83,14 @@ const Column& Record::column(std::string_view name) const {
   if (!time_name_.empty()) {  // as the file calls it; a record of a stated rate has none
     shown.insert(shown.begin(), time_name_);
   }
-  throw InputError(error::missing_column, header_,
-                   fmt::format("There is no column {}; the {}.", name,
-                               shown.size() == 1 ? fmt::format("only column is {}", shown.front())
-                                                 : fmt::format("columns are {}", fmt::join(shown, ", "))),
-                   near.empty()
-                       ? fmt::format("record the signal, or say which column it is, as --column {}=NAME.", name)
-                       : fmt::format("if {} is meant, say so: --column {}={}.", near, name,
-                                     near.find(' ') == std::string::npos ? near : "\"" + near + "\""));
+  throw InputError(
+      error::missing_column, header_,
+      fmt::format("There is no column {}; the {}.", name,
+                  shown.size() == 1 ? fmt::format("only column is {}", shown.front())
+                                    : fmt::format("columns are {}", fmt::join(shown, ", "))),
+      near.empty()
+          ? fmt::format("record the signal, or say which column it is, as --column {}=NAME.", name)
+          : fmt::format("if {} is meant, say so: --column {}.", near, option_value(fmt::format("{}={}", name, near))));
 }
 
 Place Record::place(std::string_view column, std::size_t row) const {

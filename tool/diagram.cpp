@@ -32,10 +32,14 @@ void add_fmu_options(CLI::App& options) {
 Program load_diagram(const DiagramOptions& options, Diagnostics& warnings) {
   Program program = compile_file(
       options.file, {.top = options.top, .any_order = options.any_order, .keep_names = options.keep_names}, warnings);
-  if (!options.parameters.empty()) {
-    parameters::apply(parameters::read_parameter_file(options.parameters), program.graph);
-  }
+  set_parameters_of(options.parameters, program);
   return program;
+}
+
+void set_parameters_of(const std::string& file, Program& program) {
+  if (!file.empty()) {
+    parameters::apply(parameters::read_parameter_file(file), program.graph);
+  }
 }
 
 std::vector<InputFile> inputs_of(const DiagramOptions& options) {

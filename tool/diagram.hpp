@@ -32,6 +32,9 @@ void add_fmu_options(CLI::App& options);
 /// Compiles the diagram and sets its parameters. Throws InputError with all errors; adds warnings.
 [[nodiscard]] Program load_diagram(const DiagramOptions& options, Diagnostics& warnings);
 
+/// Sets the parameters of a file; without a name nothing is set. Throws InputError.
+void set_parameters_of(const std::string& file, Program& program);
+
 /// What a diagram is read from, for refuse_to_overwrite.
 [[nodiscard]] std::vector<InputFile> inputs_of(const DiagramOptions& options);
 

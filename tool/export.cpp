@@ -232,14 +232,11 @@ int export_joints(const ExportOptions& options, Console& console) {
   refuse_overwriting(options, axes);
   Diagnostics warnings;
   std::string robot = options.into.empty() ? std::string() : read_text_file(options.into);
-  std::string diagram_name;
   std::vector<ExportedJoint> joints;
+  const Program diagram = load_diagram(options.diagram, warnings);
   for (const ExportedAxis& axis : axes) {
-    DiagramOptions diagram = options.diagram;
-    diagram.keep_names = true;
-    diagram.parameters = axis.parameters;
-    const Program program = load_diagram(diagram, warnings);
-    diagram_name = program.graph.name;
+    Program program = diagram;
+    set_parameters_of(axis.parameters, program);
     const robots::Joint motor = robots::joint_of(program, options.joint);
     ExportedJoint made{.axis = axis, .joint = robots::behind_gear(motor, axis.gear)};
     const robots::FileOptions file{.format = options.format == "urdf" ? robots::Format::Urdf : robots::Format::Mujoco,
@@ -260,10 +257,10 @@ int export_joints(const ExportOptions& options, Console& console) {
   }
   write_file_atomically(options.output, robot);
   if (options.json) {
-    console.print(as_json(options, joints, diagram_name).dump(2) + "\n");
+    console.print(as_json(options, joints, diagram.graph.name).dump(2) + "\n");
   } else {
     for (const ExportedJoint& one : joints) {
-      console.print(text_of(options, one, diagram_name));
+      console.print(text_of(options, one, diagram.graph.name));
     }
   }
   console.report(warnings);
@@ -274,6 +271,7 @@ int export_joints(const ExportOptions& options, Console& console) {
 
 Action add_export(CLI::App& app) {
   const auto options = std::make_shared<ExportOptions>();
+  options->diagram.keep_names = true;
   app.add_option("FILE", options->diagram.file, "The diagram of the axis.")->required()->option_text("AXIS.st");
   app.add_option("--params", options->axes.parameters, "Parameters, such as `tune` has fitted.")
       ->option_text("TUNED.toml");

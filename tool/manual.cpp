@@ -8,7 +8,7 @@
 #include <sstream>
 #include <vector>
 
-#include "tool/record_options.hpp"
+#include "support/shell_words.hpp"
 #include "tool/version.hpp"
 
 namespace hysteron::tool {

@@ -15,8 +15,8 @@
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
+#include "support/shell_words.hpp"
 #include "tool/commands.hpp"
-#include "tool/record_options.hpp"
 #include "tool/templates.hpp"
 #include "tuning/simulation.hpp"
 
@@ -123,7 +123,7 @@ int make(const NewOptions& options, Console& console) {
   for (const OutputFile& file : files) {
     text += file.path.string() + "\n";
   }
-  console.print(fmt::format("{}Next: cd {} && cat README.md\n", text, quoted(folder.string())));
+  console.print(fmt::format("{}Next: cd {} && cat README.md\n", text, shell_word(folder.string())));
   return exit_ok;
 }
 

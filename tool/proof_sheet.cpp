@@ -11,9 +11,9 @@
 #include "codegen/program_hash.hpp"
 #include "support/names.hpp"
 #include "support/sha256.hpp"
+#include "support/shell_words.hpp"
 #include "support/text_file.hpp"
 #include "tool/proof_page.hpp"
-#include "tool/record_options.hpp"
 #include "tool/version.hpp"
 
 namespace hysteron::tool {
@@ -57,9 +57,9 @@ Json stack_json(const TargetProof& proof) {
 }
 
 std::string command_of(const Target& target, const TargetOptions& options, const DiagramOptions& diagram) {
-  std::string text = fmt::format("hysteron generate {} --target {}", quoted(diagram.file), target.name);
+  std::string text = fmt::format("hysteron generate {} --target {}", shell_word(diagram.file), target.name);
   const auto add = [&](std::string_view option, const std::string& value) {
-    text += value.empty() ? "" : fmt::format(" {} {}", option, quoted(value));
+    text += value.empty() ? "" : fmt::format(" {} {}", option, shell_word(value));
   };
   add("--top", diagram.top);
   add("--params", diagram.parameters);

@@ -4,9 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cctype>
 #include <string_view>
 
+#include "support/shell_words.hpp"
 #include "tool/console.hpp"
 
 namespace hysteron::tool {
@@ -33,28 +33,13 @@ void add_record_options(CLI::App& app, RecordOptions& options) {
       ->option_text("linear|hold|average");
 }
 
-std::string shell_quoted(std::string_view text) {
-  std::string result = "'";
-  for (const char c : text) {
-    result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  }
-  return result + "'";
-}
-
-std::string quoted(const std::string& word) {
-  const bool is_plain = std::ranges::all_of(word, [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::string_view("_-./+:,=@%").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  return is_plain ? word : shell_quoted(word);
-}
-
 std::string record_arguments(const RecordOptions& options) {
   std::string text;
   for (const auto& [key, value] : texts_of(options)) {
-    text += value->empty() ? "" : fmt::format(" --{} {}", key, quoted(*value));
+    text += value->empty() ? "" : fmt::format(" --{} {}", key, shell_word(*value));
   }
   for (const std::string& column : options.columns) {
-    text += " --column " + quoted(column);
+    text += " --column " + shell_word(column);
   }
   return text;
 }

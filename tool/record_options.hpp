@@ -19,12 +19,6 @@ void add_record_options(CLI::App& app, RecordOptions& options);
 /// The same as they stand on a command line, each with a space before it; nothing where none is given.
 [[nodiscard]] std::string record_arguments(const RecordOptions& options);
 
-/// In single quotes of a shell.
-[[nodiscard]] std::string shell_quoted(std::string_view text);
-
-/// A word of a command line, in quotes where the shell would take it apart.
-[[nodiscard]] std::string quoted(const std::string& word);
-
 /// Prints what was understood of a record.
 void say_what_was_read(const records::Record& record, const Program& program, bool tell_unused);
 

@@ -10,6 +10,7 @@
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/progress.hpp"
+#include "support/shell_words.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
 #include "tool/record_options.hpp"
@@ -64,13 +65,13 @@ std::string progress_text(const OutputErrorProblem& problem, const OutputErrorOp
 
 /// What looks for the cause of what this fit leaves.
 std::string diagnose_command(const TuneOptions& options) {
-  std::string command = "hysteron diagnose " + quoted(options.diagram.file);
-  command += options.diagram.top.empty() ? "" : " --top " + quoted(options.diagram.top);
+  std::string command = "hysteron diagnose " + shell_word(options.diagram.file);
+  command += options.diagram.top.empty() ? "" : " --top " + shell_word(options.diagram.top);
   for (const std::string& log : options.logs) {
-    command += " --log " + quoted(log);
+    command += " --log " + shell_word(log);
   }
   return command +
-         fmt::format(" --params {} --out diagnosis{}", quoted(options.output), record_arguments(options.record));
+         fmt::format(" --params {} --out diagnosis{}", shell_word(options.output), record_arguments(options.record));
 }
 
 int tune(const TuneOptions& options, Console& console) {

@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace hysteron::detail {
+namespace {
+
+/// Maximum_WallTime_Exceeded of Ipopt 3.14. In 3.11 the enumeration lacks it, so that the switch below is over numbers.
+constexpr int wall_time_exceeded = -5;
+
+}  // namespace
 
 Ipopt::SmartPtr<Ipopt::IpoptApplication> quiet_application(const IpoptSettings& settings) {
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
@@ -24,7 +30,7 @@ Ipopt::ApplicationReturnStatus initialize(Ipopt::IpoptApplication& application) 
 }
 
 Outcome translate(Ipopt::ApplicationReturnStatus code) {
-  switch (code) {
+  switch (static_cast<int>(code)) {
     case Ipopt::Solve_Succeeded:
       return {FitStatus::Converged, "Solve_Succeeded"};
     case Ipopt::Solved_To_Acceptable_Level:
@@ -47,6 +53,8 @@ Outcome translate(Ipopt::ApplicationReturnStatus code) {
       return {FitStatus::IterationLimit, "Maximum_Iterations_Exceeded"};
     case Ipopt::Maximum_CpuTime_Exceeded:
       return {FitStatus::IterationLimit, "Maximum_CpuTime_Exceeded"};
+    case wall_time_exceeded:
+      return {FitStatus::IterationLimit, "Maximum_WallTime_Exceeded"};
     case Ipopt::Invalid_Number_Detected:
       return {FitStatus::ModelFailed, "Invalid_Number_Detected"};
     case Ipopt::Not_Enough_Degrees_Of_Freedom:
@@ -63,8 +71,9 @@ Outcome translate(Ipopt::ApplicationReturnStatus code) {
       return {FitStatus::SolverFailed, "Insufficient_Memory"};
     case Ipopt::Internal_Error:
       return {FitStatus::SolverFailed, "Internal_Error"};
+    default:
+      return {FitStatus::SolverFailed, "a return code that this version does not know"};
   }
-  return {};
 }
 
 }  // namespace hysteron::detail

@@ -18,8 +18,8 @@ struct IpoptSettings {
 /// After all options are set. No option file is read: the default would read ipopt.opt from the directory of the user.
 [[nodiscard]] Ipopt::ApplicationReturnStatus initialize(Ipopt::IpoptApplication& application);
 
-/// Every return code of Ipopt 3.11. Without constraints, what Ipopt says of feasibility and restoration means that the
-/// line search found no descent.
+/// Every return code of Ipopt 3.11 and 3.14. Without constraints, what Ipopt says of feasibility and restoration means
+/// that the line search found no descent.
 [[nodiscard]] Outcome translate(Ipopt::ApplicationReturnStatus code);
 
 }  // namespace hysteron::detail

@@ -9,6 +9,7 @@
 #include "codegen/graph/unit.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "support/option_words.hpp"
 
 namespace hysteron {
 namespace {
@@ -22,12 +23,13 @@ void convert(records::Record& record, const Graph& graph, const Port& port, Diag
   const std::optional<units::Unit> wanted = units::parse_unit(port.unit, reason);
   const std::optional<units::Unit> found = units::parse_unit(column->unit, reason);
   const Note of_port{.place = graph.place(port.span), .text = fmt::format("{} is in {}", port.name, port.unit)};
+  const std::string as_in_the_diagram =
+      option_value(fmt::format("{}={}[{}]", port.name, column->name_in_file(), port.unit));
   if (!wanted || !found) {
-    diagnostics.warning(
-        error::unit_of_column, record.place(port.name, 0),
-        fmt::format("The unit {} of column {} is not known; its numbers are taken to be in {}.", column->unit,
-                    column->name, port.unit),
-        fmt::format("say the unit, as --column {}={}[{}].", port.name, column->name_in_file(), port.unit), {of_port});
+    diagnostics.warning(error::unit_of_column, record.place(port.name, 0),
+                        fmt::format("The unit {} of column {} is not known; its numbers are taken to be in {}.",
+                                    column->unit, column->name, port.unit),
+                        fmt::format("say the unit, as --column {}.", as_in_the_diagram), {of_port});
     return;
   }
   const std::optional<double> factor = units::conversion(*found, *wanted);
@@ -35,9 +37,8 @@ void convert(records::Record& record, const Graph& graph, const Port& port, Diag
     diagnostics.error(error::unit_of_column, record.place(port.name, 0),
                       fmt::format("Column {} is in {}, and {} of the diagram in {}.", column->name, column->unit,
                                   port.name, port.unit),
-                      fmt::format("name another column, or say that its numbers are in {} all the same: --column "
-                                  "{}={}[{}].",
-                                  port.unit, port.name, column->name_in_file(), port.unit),
+                      fmt::format("name another column, or say that its numbers are in {} all the same: --column {}.",
+                                  port.unit, as_in_the_diagram),
                       {of_port});
     return;
   }

@@ -11,6 +11,7 @@
 #include "records/time/time_unit.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "support/option_words.hpp"
 #include "support/rounded_text.hpp"
 #include "tuning/interpreted_run.hpp"
 
@@ -72,8 +73,8 @@ std::string duration_text(double seconds) {
 /// A record that is slower by just a thousand or a million was most likely not written in seconds.
 std::string unit_advice(double ratio, const std::string& time) {
   const auto mistaken = time.empty() ? std::nullopt : records::mistaken_unit(ratio);
-  return mistaken ? fmt::format("if its times are in {}, read it with --time {}[{}]. Else ", mistaken->words, time,
-                                mistaken->unit)
+  return mistaken ? fmt::format("if its times are in {}, read it with --time {}. Else ", mistaken->words,
+                                option_value(fmt::format("{}[{}]", time, mistaken->unit)))
                   : std::string();
 }
 

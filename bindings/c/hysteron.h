@@ -63,8 +63,14 @@ HYSTERON_API unsigned hysteron_message_column(const hysteron_messages* messages,
 /* What is wrong, and what to write instead; a sentence each. */
 HYSTERON_API const char* hysteron_message_cause(const hysteron_messages* messages, size_t index);
 HYSTERON_API const char* hysteron_message_mend(const hysteron_messages* messages, size_t index);
-/* All of them as the tool prints them, with the lines that they are about. */
+/* All of them as the tool prints them, with the lines that they are about. An option is named as this API takes it:
+ * {"rows": "1..60"}, where the tool says --rows 1..60. */
 HYSTERON_API const char* hysteron_messages_text(const hysteron_messages* messages);
+/* Names the options in the words of another language: rows="1..60" in Python. What was given of these messages before is
+ * then no longer valid. */
+#define HYSTERON_FOR_C 0
+#define HYSTERON_FOR_PYTHON 1
+HYSTERON_API void hysteron_messages_for(hysteron_messages* messages, int caller);
 HYSTERON_API void hysteron_messages_free(hysteron_messages* messages);
 
 /* ---- diagrams --------------------------------------------------------------------------------------------------- */

@@ -51,29 +51,20 @@ void Call::note(const std::string& file, const std::vector<std::string>& notes) 
   }
 }
 
-void Call::add(const Diagnostics& diagnostics, hysteron_messages& messages) const {
-  Sources sources;
-  if (!memory_.text.empty()) {
-    sources.put(std::string(memory_.file), memory_.text);
-  }
-  for (const Diagnostic& one : diagnostics.all()) {
-    add_message(messages, one.severity == Severity::Error ? HYSTERON_ERROR : HYSTERON_WARNING, one.number, one.place,
-                one.cause, one.mend);
-  }
-  messages.text += diagnostics.all().empty() ? std::string() : as_text(diagnostics, sources);
+void Call::hand_out(const Diagnostics& diagnostics) const {
+  auto messages = std::make_unique<hysteron_messages>();
+  messages->found = diagnostics;
+  messages->notes = notes_;
+  messages->memory_file = memory_file_;
+  messages->memory_text = memory_text_;
+  messages->word_for(Caller::C);
+  *out_ = messages.release();
 }
 
 void Call::tell() {
-  if (out_ == nullptr || (diagnostics_.all().empty() && notes_.empty())) {
-    return;
+  if (out_ != nullptr && !(diagnostics_.all().empty() && notes_.empty())) {
+    hand_out(diagnostics_);
   }
-  auto messages = std::make_unique<hysteron_messages>();
-  add(diagnostics_, *messages);
-  for (const auto& [file, text] : notes_) {
-    add_message(*messages, HYSTERON_NOTE, 0, {.file = file}, text, {});
-    messages->text += fmt::format("note: {}: {}\n", file, text);
-  }
-  *out_ = messages.release();
 }
 
 void Call::fail() noexcept {
@@ -81,19 +72,20 @@ void Call::fail() noexcept {
     return;
   }
   try {
-    auto messages = std::make_unique<hysteron_messages>();
     try {
       throw;
     } catch (const InputError& error) {
-      add(error.diagnostics(), *messages);
+      notes_.clear();
+      hand_out(error.diagnostics());
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::exception& error) {
+      auto messages = std::make_unique<hysteron_messages>();
       add_message(*messages, HYSTERON_ERROR, fault_of_library, {}, error.what(),
                   "this is a fault of the library: report it with the input.");
       messages->text = fmt::format("error: {}\n", error.what());
+      *out_ = messages.release();
     }
-    *out_ = messages.release();
   } catch (...) {
     *out_ = &out_of_memory();
   }
@@ -106,6 +98,27 @@ void require(const void* pointer, std::string_view what) {
 }
 
 }  // namespace hysteron::bindings
+
+void hysteron_messages::word_for(hysteron::Caller caller) {
+  const hysteron::Diagnostics worded = hysteron::in_words_of(caller, found);
+  hysteron::Sources sources;
+  if (!memory_text.empty()) {
+    sources.put(memory_file, memory_text);
+  }
+  hysteron_messages made;
+  for (const hysteron::Diagnostic& one : worded.all()) {
+    hysteron::bindings::add_message(made, one.severity == hysteron::Severity::Error ? HYSTERON_ERROR : HYSTERON_WARNING,
+                                    one.number, one.place, one.cause, one.mend);
+  }
+  made.text = worded.all().empty() ? std::string() : hysteron::as_text(worded, sources);
+  for (const auto& [file, note] : notes) {
+    const std::string said = hysteron::in_words_of(caller, note);
+    hysteron::bindings::add_message(made, HYSTERON_NOTE, 0, {.file = file}, said, {});
+    made.text += fmt::format("note: {}: {}\n", file, said);
+  }
+  list = std::move(made.list);
+  text = std::move(made.text);
+}
 
 using hysteron::bindings::at;
 
@@ -160,6 +173,17 @@ const char* hysteron_message_mend(const hysteron_messages* messages, size_t inde
 
 const char* hysteron_messages_text(const hysteron_messages* messages) {
   return messages != nullptr ? messages->text.c_str() : "";
+}
+
+void hysteron_messages_for(hysteron_messages* messages, int caller) {
+  const bool is_worded = messages != nullptr && !(messages->found.all().empty() && messages->notes.empty());
+  if (!is_worded) {  // no memory is left, or a fault of the library: no option is named
+    return;
+  }
+  try {
+    messages->word_for(caller == HYSTERON_FOR_PYTHON ? hysteron::Caller::Python : hysteron::Caller::C);
+  } catch (...) {  // no memory: they stay as they are
+  }
 }
 
 void hysteron_messages_free(hysteron_messages* messages) {

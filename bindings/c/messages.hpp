@@ -10,6 +10,7 @@
 
 #include "bindings/c/hysteron.h"
 #include "support/diagnostic.hpp"
+#include "support/option_words.hpp"
 
 struct hysteron_messages {
   struct Message {
@@ -19,17 +20,20 @@ struct hysteron_messages {
     std::string cause{};
     std::string mend{};
   };
+  /// What was found, in the words of the command line.
+  hysteron::Diagnostics found{};
+  std::vector<std::pair<std::string, std::string>> notes{};  ///< file and text
+  std::string memory_file{};                                 ///< of a source that stands in no file
+  std::string memory_text{};
+
+  /// The same in the words of a caller.
   std::vector<Message> list{};
   std::string text{};
+
+  void word_for(hysteron::Caller caller);
 };
 
 namespace hysteron::bindings {
-
-/// A source that stands in no file, for the lines that messages show.
-struct MemoryText {
-  std::string_view file{};
-  std::string_view text{};
-};
 
 /// What one call has to say, besides its result.
 class Call {
@@ -40,7 +44,11 @@ class Call {
     }
   }
 
-  void has_text(std::string_view file, std::string_view text) { memory_ = {.file = file, .text = text}; }
+  /// A source that stands in no file, for the lines that messages show.
+  void has_text(std::string_view file, std::string_view text) {
+    memory_file_ = file;
+    memory_text_ = text;
+  }
   void warn(const Diagnostics& diagnostics) { diagnostics_ = diagnostics; }
   void note(const std::string& file, const std::vector<std::string>& notes);
 
@@ -60,10 +68,11 @@ class Call {
  private:
   void tell();
   void fail() noexcept;
-  void add(const Diagnostics& diagnostics, hysteron_messages& messages) const;
+  void hand_out(const Diagnostics& diagnostics) const;
 
   hysteron_messages** out_;
-  MemoryText memory_{};
+  std::string_view memory_file_{};
+  std::string_view memory_text_{};
   Diagnostics diagnostics_{};
   std::vector<std::pair<std::string, std::string>> notes_{};  ///< file and text
 };

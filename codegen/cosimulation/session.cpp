@@ -242,7 +242,7 @@ void Session::report_time() {
   throw InputError(error::fmu_took_too_long, {.file = fmu_.path()},
                    with_log(fmt::format("The FMU of {} took longer than {} s {}, and was ended.", instance_,
                                         number_text(time_limit()), doing())),
-                   "give it more time with --fmu-time-limit SECONDS, or a step that its solver can do.");
+                   "give it more time, in seconds, with --fmu-time-limit, or a step that its solver can do.");
 }
 
 void Session::report_refusal() const {

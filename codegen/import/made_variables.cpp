@@ -14,13 +14,12 @@ void MadeVariables::take(const std::string& name) {
   taken_.insert(in_capitals(name));
 }
 
-std::string MadeVariables::new_name(std::string base) {
-  base = is_reserved(base) || !taken_.insert(in_capitals(base)).second ? base + "_1" : base;
-  for (int number = 2; taken_.contains(in_capitals(base)) && base.ends_with(fmt::format("_{}", number - 1)); ++number) {
-    base = base.substr(0, base.rfind('_')) + fmt::format("_{}", number);
+std::string MadeVariables::new_name(const std::string& base) {
+  std::string name = base;
+  for (int number = 1; is_reserved(name) || !taken_.insert(in_capitals(name)).second; ++number) {
+    name = fmt::format("{}_{}", base, number);
   }
-  taken_.insert(in_capitals(base));
-  return base;
+  return name;
 }
 
 std::string MadeVariables::delayed(const std::string& value, Type type, const std::string& start) {

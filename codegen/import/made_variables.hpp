@@ -14,8 +14,8 @@ class MadeVariables {
   /// A name of the drawing: no variable is made of it.
   void take(const std::string& name);
 
-  /// The name itself, or with a number behind it.
-  [[nodiscard]] std::string new_name(std::string base);
+  /// The name itself, or the first of NAME_1, NAME_2, … that is free. It is taken from then on.
+  [[nodiscard]] std::string new_name(const std::string& base);
 
   /// What a value was a cycle ago, as the output of a delay that starts at `start`.
   [[nodiscard]] std::string delayed(const std::string& value, Type type, const std::string& start);

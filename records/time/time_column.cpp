@@ -15,6 +15,7 @@
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
+#include "support/option_words.hpp"
 
 namespace hysteron::records {
 namespace {
@@ -98,9 +99,9 @@ std::vector<std::size_t> candidates(const Table& table) {
       "state how many rows a second it has, such as --rate 1kHz, or name its column, as --time NAME[ms].";
   if (!rising.empty()) {
     mend = fmt::format(
-        "column {0} rises from row to row: if that is the time, read it with --time {0}[s]; without a "
+        "column {} rises from row to row: if that is the time, read it with --time {}; without a "
         "time, state the rate, such as --rate 1kHz.",
-        table.columns[rising.front()].name);
+        table.columns[rising.front()].name, option_value(table.columns[rising.front()].name + "[s]"));
   }
   if (!named) {
     mend += " The columns have no names: give them, as --column U=2.";
@@ -140,9 +141,10 @@ FoundUnit unit_of(const TableColumn& column, const ReadOptions& options) {
   if (!stated.empty()) {
     const auto unit = time_unit(stated);
     if (!unit) {
-      throw InputError(
-          error::time_unit, column.place, fmt::format("The time is given in {}, which is no unit of time.", stated),
-          fmt::format("state it, as --time {}[UNIT]; s, ms, us, ns, min, h and d are known.", column.name));
+      throw InputError(error::time_unit, column.place,
+                       fmt::format("The time is given in {}, which is no unit of time.", stated),
+                       fmt::format("state it, as --time {}; s, ms, us, ns, min, h and d are known.",
+                                   option_value(column.name + "[UNIT]")));
     }
     result.unit = *unit;
   } else if (name && name->unit) {
@@ -206,7 +208,8 @@ void refuse_days_without_unit(const TableColumn& column, const ReadOptions& opti
     throw InputError(error::two_readings, column.place,
                      fmt::format("The times from {} on could be seconds, or days as {} counts them.",
                                  number_text(first), of_excel ? "Excel" : "MATLAB"),
-                     fmt::format("say which: --time {0}[d] or --time {0}[s].", column.name));
+                     fmt::format("say which: --time {} or --time {}.", option_value(column.name + "[d]"),
+                                 option_value(column.name + "[s]")));
   }
 }
 
@@ -356,7 +359,7 @@ Times times_of(const Table& table, const ReadOptions& options) {
             fmt::format(
                 "bring all to one with --resample linear (hold for encoders and commands); or, if they count as "
                 "recorded at once, --time {}.",
-                table.columns[found.front()].name));
+                option_value(table.columns[found.front()].name)));
       }
       for (const std::size_t i : found) {
         result.own.push_back({.column = i + 1, .seconds = times_of_column(table, i, std::nullopt, options).seconds});
@@ -369,7 +372,7 @@ Times times_of(const Table& table, const ReadOptions& options) {
       throw InputError(
           error::two_readings, table.columns[others.front()].place,
           fmt::format("Each of the columns {} could be the time.", fmt::join(names_of(table, found), " and ")),
-          fmt::format("say which: --time {}.", table.columns[found.front()].name));
+          fmt::format("say which: --time {}.", option_value(table.columns[found.front()].name)));
     }
   }
   const std::size_t index = found.front();

@@ -52,7 +52,7 @@ void add(Counters::Count& count) {
   count.store(count.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 
-std::string_view text_of(boost::string_view text) {
+std::string_view text_of(boost::beast::string_view text) {  // of 1.74 boost::string_view, of 1.83 another
   return {text.data(), text.size()};
 }
 

@@ -119,6 +119,21 @@ TEST(Export, WritesSeveralJointsIntoOneRobot) {
                               HasSubstr("joint wrist, from SPEED.XOUT of AXIS with wrist.toml")));
 }
 
+TEST(Export, ReadsTheDiagramOnceForAllJoints) {
+  const ExportBench bench;
+  bench.write("two.xml",
+              "<mujoco>\n  <worldbody><body><joint name=\"elbow\"/><geom size=\".1\"/>\n"
+              "    <body><joint name=\"wrist\"/><geom size=\".1\"/></body></body></worldbody>\n</mujoco>\n");
+  // A pipe can be read once.
+  const auto piped = bench.shell(
+      "mkfifo pipe.st; cat axis.st > pipe.st & timeout 20 hysteron export pipe.st --joint elbow=tuned.toml "
+      "--joint wrist --into two.xml --out piped.xml && hysteron export axis.st --joint elbow=tuned.toml --joint wrist "
+      "--into two.xml --out read.xml");
+  EXPECT_EQ(piped.code, 0) << piped.err;
+  EXPECT_EQ(bench.read("piped.xml"), bench.read("read.xml"));
+  EXPECT_THAT(bench.read("piped.xml"), AllOf(HasSubstr("frictionloss=\"0.004\""), HasSubstr("frictionloss=\"0.002\"")));
+}
+
 TEST(Export, RefusesWhatIsOfNoJointOrOfTwo) {
   const ExportBench bench;
   for (const auto& [options, text] :

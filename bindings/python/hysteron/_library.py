@@ -10,6 +10,7 @@ except ImportError:
     LIBRARY = None
 
 ABI = 1
+FOR_PYTHON = 1
 
 Progress = CFUNCTYPE(c_int, c_void_p, c_double, c_int)
 _MESSAGES = POINTER(c_void_p)
@@ -29,6 +30,7 @@ _FUNCTIONS = {
     "message_cause": (c_char_p, [c_void_p, c_size_t]),
     "message_mend": (c_char_p, [c_void_p, c_size_t]),
     "messages_text": (c_char_p, [c_void_p]),
+    "messages_for": (None, [c_void_p, c_int]),
     "messages_free": (None, [c_void_p]),
     "compile_file": (c_void_p, [c_char_p, c_char_p, _MESSAGES]),
     "compile_text": (c_void_p, [c_char_p, c_char_p, _MESSAGES]),

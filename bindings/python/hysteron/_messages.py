@@ -4,7 +4,7 @@ import warnings
 from ctypes import byref, c_void_p
 from dataclasses import dataclass
 
-from ._library import library
+from ._library import FOR_PYTHON, library
 
 _SEVERITIES = ("error", "warning", "note")
 
@@ -25,7 +25,7 @@ class Message:
 class Error(Exception):
     """Bad input. `code`, `message` and `mend` are of the first error; `messages` are all that was found.
 
-    str() is the text that the tool prints, with the lines that it is about.
+    str() is the text that the tool prints, with the lines that it is about. An option is named as a keyword, rows="1..60".
     """
 
     def __init__(self, text, messages):
@@ -74,6 +74,7 @@ def called(name, *arguments, told=None):
     out = c_void_p()
     result = getattr(library, "hysteron_" + name)(*arguments, byref(out))
     try:
+        library.hysteron_messages_for(out, FOR_PYTHON)
         messages = _listed(out)
         text = _text(library.hysteron_messages_text(out))
     finally:

@@ -108,14 +108,19 @@ class Enumeration {
     return std::ranges::any_of(base_.effects, [&](const Applied& applied) {
       const bool is_pin = std::ranges::any_of(
           applied.wires, [&](const auto& wire) { return edge.name == applied.instance + "." + wire.first; });
-      return is_pin ||
-             (!applied.delay.empty() && (edge.name == applied.delay + ".XIN" || edge.name == applied.delay + ".XOUT"));
+      const auto is_of = [&](const std::string& helper) {
+        return !helper.empty() && (edge.name == helper + ".XIN" || edge.name == helper + ".XOUT");
+      };
+      return is_pin || is_of(applied.delay) || is_of(applied.rate);
     });
   }
 
   /// What may drive a further input: signals of the same block that come from a block with memory, another input of
   /// the diagram, a column of the records that nothing uses.
   [[nodiscard]] std::vector<std::string> drivers(const EffectKind& kind, const Edge& edge) const {
+    if (options_.driver) {
+      return {options_.driver->signal};
+    }
     std::vector<std::string> result;
     if (kind.family == name_of(Family::Coupling)) {
       if (!edge.prefix.empty()) {
@@ -215,11 +220,14 @@ class Enumeration {
                     .wires = wires};
     Insertion insertion{
         .block = kind.block, .instance = instance, .input = kind.input, .output = kind.output, .wires = wires};
+    if (options_.driver && options_.driver->is_rate && !wires.empty()) {
+      applied.rate = edge.prefix + put_between("HY_DERIVATIVE", "RATE", edge, insertion);
+    }
     if (delayed) {
-      insertion.delay =
-          free_name(source_->blocks[edge.definition], fmt::format("{}_{}1", instance, wires.front().first));
-      insertion.delayed = std::exchange(insertion.wires.front().second, insertion.delay + ".XOUT");
-      applied.delay = edge.prefix + insertion.delay;
+      applied.delay = edge.prefix + put_between("HY_DELAY", wires.front().first + "1", edge, insertion);
+    }
+    if (options_.driver && options_.driver->is_backwards && !wires.empty()) {
+      insertion.wires.front().second.insert(0, "-");
     }
     const auto is_column = [&](const auto& wire) {
       return std::ranges::find(options_.columns, wire.second) != options_.columns.end();
@@ -233,6 +241,16 @@ class Enumeration {
       candidate.family += "|" + driver;
     }
     return add(std::move(candidate), std::move(applied));
+  }
+
+  /// Puts a block between the effect's first further input and what drives it; gives the name of that block.
+  std::string put_between(const std::string& block, const std::string& what, const Edge& edge,
+                          Insertion& insertion) const {
+    const std::string name =
+        free_name(source_->blocks[edge.definition], fmt::format("{}_{}", insertion.instance, what));
+    std::string& driver = insertion.wires.front().second;
+    insertion.helpers.push_back({.block = block, .instance = name, .signal = std::exchange(driver, name + ".XOUT")});
+    return name;
   }
 
   void change_instances(const EffectKind& kind) {
@@ -300,7 +318,7 @@ class Enumeration {
       if (candidate.kind.of_output) {
         candidate.input = changed;
       }
-      if (!makes_sense(candidate, changed)) {
+      if (!options_.driver && !makes_sense(candidate, changed)) {
         return true;
       }
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -28,6 +29,7 @@ struct Applied {
   std::vector<std::pair<std::string, double>> settings{};    ///< of parameters that are not fitted, by path
   std::vector<std::pair<std::string, std::string>> wires{};  ///< auxiliary pins and what drives them
   std::string delay{};                                       ///< path of the HY_DELAY before them; empty: none
+  std::string rate{};                                        ///< path of the HY_DERIVATIVE before them; empty: none
 
   [[nodiscard]] bool has(Role role) const;
   [[nodiscard]] bool has_gap() const;
@@ -71,6 +73,13 @@ struct Candidate {
 /// Whether an effect is among those that the user wants tried; none given are all.
 [[nodiscard]] bool is_tried(const std::vector<std::string>& effects, std::string_view effect);
 
+/// What drives the first further input of an effect, where that is known and need not be searched for.
+struct GivenDriver {
+  std::string signal{};       ///< text that gives it: Y, SPEED.XOUT
+  bool is_rate = false;       ///< of it the rate, by a block of its own
+  bool is_backwards = false;  ///< with the other sign: the effect is on a force that a motion asks for
+};
+
 struct CandidateOptions {
   std::vector<std::string> effects{};  ///< identifiers; empty: all
   std::vector<std::string> columns{};  ///< of the records that the diagram does not use, for cross-coupling
@@ -78,6 +87,8 @@ struct CandidateOptions {
   /// What drives the further inputs of an effect but the first, in their order; none: they stay at their defaults. It
   /// is there in the top block alone.
   std::vector<std::string> loads{};
+  /// The effects have this driver and no other, wherever it comes from.
+  std::optional<GivenDriver> driver{};
 };
 
 /// Every effect on every edge, every richer block, every parameter that switches an effect on.

@@ -126,10 +126,10 @@ std::string with_effect(const language::SourceFile& source, const Edge& edge, co
   const language::FunctionBlock& block = source.blocks[edge.definition];
   const Ends ends = ends_of(source, block);
   std::vector<Edit> edits{declaration(block, ends, fmt::format("{} : {};", insertion.instance, insertion.block))};
-  if (!insertion.delay.empty()) {
-    edits.push_back(declaration(block, ends, fmt::format("{} : HY_DELAY;", insertion.delay)));
+  for (const Helper& helper : insertion.helpers) {
+    edits.push_back(declaration(block, ends, fmt::format("{} : {};", helper.instance, helper.block)));
     edits.push_back(
-        {.span = {ends.block, 0}, .text = fmt::format("  {}(XIN := {});\n", insertion.delay, insertion.delayed)});
+        {.span = {ends.block, 0}, .text = fmt::format("  {}(XIN := {});\n", helper.instance, helper.signal)});
   }
   if (!insertion.new_input.empty()) {
     edits.push_back({.span = {ends.behind, 0},

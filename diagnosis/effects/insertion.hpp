@@ -16,6 +16,13 @@
 
 namespace hysteron::diagnosis {
 
+/// A block that stands between a signal and what reads its XOUT.
+struct Helper {
+  std::string block{};     ///< HY_DELAY
+  std::string instance{};  ///< its name: no other declared one of the block
+  std::string signal{};    ///< the text that drives its XIN
+};
+
 /// A block to be put on an edge: XIN is the signal, whatever read it reads XOUT instead.
 struct Insertion {
   std::string block{};     ///< HY_CREEP, or a FUNCTION_BLOCK of the file
@@ -23,9 +30,8 @@ struct Insertion {
   std::string input = "XIN";
   std::string output = "XOUT";
   std::vector<std::pair<std::string, std::string>> wires{};  ///< further pins, and the text that drives each
-  std::string delay{};      ///< name of a HY_DELAY that is put there too, for these to read; empty: none
-  std::string delayed{};    ///< the text that drives it
-  std::string new_input{};  ///< an LREAL input that the block gets, with the default 0; empty: none
+  std::vector<Helper> helpers{};  ///< that are put there too, for these to read
+  std::string new_input{};        ///< an LREAL input that the block gets, with the default 0; empty: none
 };
 
 [[nodiscard]] std::string with_effect(const language::SourceFile& source, const Edge& edge, const Insertion& insertion);

@@ -220,9 +220,13 @@ std::vector<std::string> families_by_law(const Explored& there, const LawSet& se
   return result;
 }
 
-SetFinding described(const Explored& there, const LawSet& set) {
+/// `known`: the known parameters that the laws were found about.
+SetFinding described(const Explored& there, const LawSet& set, const VectorXd& known) {
   SetFinding result{
       .space = there.space->name(), .probability = set.probability, .closed = 1.0 - std::exp(set.log_square)};
+  for (Index j = 0; j < known.size(); ++j) {
+    result.known.push_back(known[j] + (j < set.score.known.size() ? set.score.known[j] : 0.0));
+  }
   std::vector<std::string> numbered;  // each law a group of its own
   for (std::size_t k = 0; k < set.laws.size(); ++k) {
     numbered.push_back(std::to_string(k));
@@ -309,6 +313,7 @@ struct Weighing::Sets {
   std::optional<OpenLoop> open{};
   Explanation plant{};  ///< of the opened loop
   const Task* task = nullptr;
+  VectorXd known{};  ///< the known parameters that the laws are found about
   std::vector<Explored> spaces{};
   AllSets all{};
 };
@@ -324,6 +329,7 @@ Weighing::Weighing(const Task& task, const std::string& top, const Explanation& 
   const Task& asked = open ? open->task : task;
   const Explanation& fitted = open ? sets_->plant : calibrated;
   sets_->task = &asked;
+  sets_->known = fitted.fit.x.head(std::ssize(asked.known));
   std::vector<Explored>& spaces = sets_->spaces;
   std::unique_ptr<MissingSpace> missing =
       MissingSpace::of_bottleneck(asked, top, fitted, options.columns, options.threads);
@@ -401,7 +407,7 @@ Evidence Weighing::told(const Rules& rules) {
   constexpr std::size_t most_told = 40;
   for (const LawSet& set : sets) {
     if (set.probability > 0.0 && result.sets.size() < most_told) {
-      result.sets.push_back(described(spaces[set.space], set));
+      result.sets.push_back(described(spaces[set.space], set, sets_->known));
     }
   }
   if (!result.families.empty() && !sets.front().laws.empty()) {

@@ -8,6 +8,7 @@
 #include "diagnosis/evidence/output_space.hpp"
 #include "diagnosis/model/refusal.hpp"
 #include "diagnosis/policy.hpp"
+#include "diagnosis/search/expansion.hpp"
 #include "diagnosis/search/stretches.hpp"
 
 namespace hysteron::diagnosis {
@@ -58,79 +59,192 @@ double value_of(const LawFinding& law, const EffectParameter& parameter, double 
   return found == law.values.end() ? otherwise : found->value;
 }
 
-}  // namespace
+/// Whether a strength has no meaning below 0: what resists a motion does not drive it.
+bool is_one_sided(const EffectParameter& parameter) {
+  return parameter.strength && parameter.field.neutral == 0.0 && parameter.field.minimum == 0.0;
+}
 
-Explained explained(const Task& task, const std::string& top, const SetFinding& set, const Explanation& calibrated,
-                    const std::vector<std::string>& columns, Rules& rules) {
-  Explanation result{.variant = calibrated.variant};
-  bool is_whole = true;        // all laws have a place and their own drivers
-  std::vector<Index> travels;  // of frictions: how far they give
-  VectorXd start = calibrated.fit.x.head(std::ssize(task.known));
+/// Whether a law drives where its block resists. On a force that a motion asks for, in inverse dynamics or in the
+/// branch of a sum that is taken away, a friction is one of the other sign: its velocity counts backwards there.
+bool is_backwards(const LawFinding& law, const std::vector<EffectParameter>& parameters) {
+  double sum = 0.0;
+  for (const EffectParameter& parameter : parameters) {
+    sum += is_one_sided(parameter) ? value_of(law, parameter, 0.0) : 0.0;
+  }
+  return sum < 0.0;
+}
+
+/// The law's block in the diagram.
+struct Placed {
+  std::optional<Candidate> candidate{};
+  bool is_backwards = false;
+  bool is_own_driver = false;  ///< it is driven by what the law was found with
+};
+
+/// The law on its edge: with a driver that the search would try there, too, where that one is the same or stands for
+/// it; else with the law's own, or the rate of that.
+Placed placed(const Variant& variant, const std::string& top, const Graph& graph, const LawFinding& law,
+              const std::vector<std::string>& columns) {
+  CandidateOptions options{.effects = {law.effect}, .columns = columns, .again = true};
+  for (std::size_t i = 1; i < law.drivers.size(); ++i) {
+    options.loads.push_back(wire_name(graph, law.drivers[i]));
+  }
+  const auto found = [&]() -> std::optional<Candidate> {
+    const std::vector<Candidate> list = candidates_of(variant, top, options);
+    const Candidate* const best = fitting(list, graph, law);
+    return best == nullptr ? std::nullopt : std::optional(*best);
+  };
+  Placed result{.candidate = found()};
+  if (law.drivers.empty()) {
+    result.is_own_driver = result.candidate && result.candidate->own().wires.empty();
+    return result;
+  }
+  if (result.candidate && !result.candidate->own().wires.empty()) {
+    options.driver = {.signal = result.candidate->own().wires.front().second};
+    result.is_own_driver = is_driven_alike(*result.candidate, graph, law);
+  } else {
+    const std::string& driver = law.drivers.front();
+    const bool is_rate = driver.ends_with('\'');
+    options.driver = {.signal = wire_name(graph, is_rate ? driver.substr(0, driver.size() - 1) : driver),
+                      .is_rate = is_rate};
+    result.candidate = found();
+    result.is_own_driver = result.candidate && law.drivers.size() == result.candidate->own().wires.size();
+  }
+  if (result.candidate && is_backwards(law, result.candidate->own().parameters)) {
+    options.driver->is_backwards = true;
+    result.candidate = found();
+    result.is_backwards = true;
+  }
+  return result;
+}
+
+/// The set in the diagram, and where its numbers begin.
+struct Beginning {
+  Variant variant{};
+  VectorXd x{};                  ///< of the known parameters and of the effects
+  std::vector<Index> travels{};  ///< of frictions: how far they give
+  bool is_whole = true;          ///< all laws have a place and their own drivers
+};
+
+Beginning start_of(const Task& task, const std::string& top, const SetFinding& set, const Explanation& calibrated,
+                   const std::vector<std::string>& columns, Rules& rules) {
+  Beginning result{.variant = calibrated.variant, .x = calibrated.fit.x.head(std::ssize(task.known))};
   for (std::size_t j = 0; j < std::min(task.known.size(), set.known.size()); ++j) {
-    const auto at = static_cast<Index>(j);
-    start[at] = std::clamp(start[at] + set.known[j], task.known[j].lower, task.known[j].upper);
+    result.x[static_cast<Index>(j)] = std::clamp(set.known[j], task.known[j].lower, task.known[j].upper);
   }
   for (const LawFinding& law : set.laws) {
     if (law.closed < rules[policy::relevant] && set.laws.size() > 1) {
       continue;
     }
-    CandidateOptions options{.effects = {law.effect}, .columns = columns, .again = true};
-    for (std::size_t i = 1; i < law.drivers.size(); ++i) {
-      options.loads.push_back(wire_name(calibrated.variant.program->graph, law.drivers[i]));
-    }
-    const std::vector<Candidate> list = candidates_of(result.variant, top, options);
-    const Candidate* const found = fitting(list, calibrated.variant.program->graph, law);
-    if (found == nullptr) {
-      is_whole = false;
+    const Placed there = placed(result.variant, top, calibrated.variant.program->graph, law, columns);
+    result.is_whole = result.is_whole && there.is_own_driver;
+    if (!there.candidate) {
       continue;
     }
-    is_whole = is_whole && is_driven_alike(*found, calibrated.variant.program->graph, law);
-    Variant variant = found->variant;
+    Variant variant = there.candidate->variant;
     Applied& own = variant.effects.back();
     for (std::size_t j = 0; j < own.parameters.size(); ++j) {
       const EffectParameter& parameter = own.parameters[j];
-      const double value =
-          value_of(law, parameter, parameter.strength ? parameter.field.neutral : parameter.field.preset);
+      double value = value_of(law, parameter, parameter.strength ? parameter.field.neutral : parameter.field.preset);
+      if (is_one_sided(parameter)) {
+        value = std::max(0.0, there.is_backwards ? -value : value);
+      }
       if (parameter.role == Role::Reference || !std::isfinite(value)) {
         own.settings.emplace_back(own.paths[j], value);
         continue;
       }
       variant.further.push_back(unknown_of(parameter, own.paths[j], {.values = {value}}));
-      start.conservativeResize(start.size() + 1);
-      start[start.size() - 1] = value;
+      result.x.conservativeResize(result.x.size() + 1);
+      result.x[result.x.size() - 1] = value;
       if (parameter.is_travel()) {
-        travels.push_back(start.size() - 1);
+        result.travels.push_back(result.x.size() - 1);
       }
     }
     std::erase_if(own.settings, [](const auto& setting) { return !std::isfinite(setting.second); });
     result.variant = std::move(variant);
     result.variant.program = compiled(result.variant, top);
   }
-  if (result.variant.effects.size() == calibrated.variant.effects.size()) {
+  return result;
+}
+
+/// The diagram with the set as the start has it; its frictions give so many times as far. Nothing is fitted.
+Explanation begun(const Task& task, const Beginning& start, const Explanation& calibrated, double softer) {
+  Explanation result{.variant = start.variant};
+  Model model(task, *result.variant.program, result.variant.further);
+  VectorXd& x = result.fit.x;
+  x = start.x;
+  for (const Index j : start.travels) {
+    x[j] *= softer;
+  }
+  x.conservativeResize(model.unknowns());
+  x.tail(model.unknowns() - start.x.size()) = calibrated.fit.x.tail(model.unknowns() - start.x.size());
+  if (!model.residuals(x, result.fit.residuals, &result.fit.jacobian)) {
+    return {};
+  }
+  result.fit.cost = cost_of(model, x, result.fit.residuals, nullptr);
+  return result;
+}
+
+Explanation fitted_from(const Task& task, Explanation one) {
+  if (!std::isfinite(one.fit.cost)) {
+    return one;
+  }
+  Model model(task, *one.variant.program, one.variant.further);
+  one.fit = fit(model, one.fit.x, {.iterations = 25});
+  keep_starts(one, model);
+  finish(task, one, {.thoroughly = true});
+  return one;
+}
+
+/// The set with one effect more, wherever that one closes most: of those that close `as_much` as the best, in cost, the
+/// simplest. Evidence of a plant that was taken out of its
+/// loop says nothing of the rest of the loop; a sample too many there outweighs all that the plant lacks, and a fit
+/// without it would bend the plant to make up for it.
+Explanation beside_the_plant(const Task& task, const std::string& top, const Explanation& begun,
+                             const Explanation& calibrated, double as_much, const ExplainOptions& options) {
+  constexpr std::size_t fitted = 6;
+  if (!std::isfinite(begun.fit.cost)) {
+    return {};
+  }
+  const Footing footing{.calibrated = calibrated, .nominal = calibrated};
+  const SearchOptions asked{.candidates = {.effects = options.effects, .columns = options.columns},
+                            .threads = options.threads};
+  Expansion expansion(task, top, footing, options.floor_cost, asked);
+  std::vector<Explanation> found = expansion.of(begun, any_effect, fitted);
+  if (found.empty()) {
+    return {};
+  }
+  const double as_good = std::ranges::min(found, {}, cost_of_fit).fit.cost + as_much;
+  std::erase_if(found, [&](const Explanation& one) { return one.fit.cost > as_good; });
+  return std::ranges::min(found, {}, [](const Explanation& one) { return std::pair(one.parameters(), one.fit.cost); });
+}
+
+}  // namespace
+
+Explained explained(const Task& task, const std::string& top, const SetFinding& set, const Explanation& calibrated,
+                    const ExplainOptions& options, Rules& rules) {
+  const Beginning start = start_of(task, top, set, calibrated, options.columns, rules);
+  if (start.variant.effects.size() == calibrated.variant.effects.size()) {
     return {};
   }
   // A friction that lets go within a step has no derivative that would lead a fit: softer ones are tried, too.
   Explanation best{};
   for (const double softer : {1.0, 10.0, 100.0}) {
-    Explanation one = unless_refused([&] {
-      Explanation fitted = result;
-      Model model(task, *fitted.variant.program, fitted.variant.further);
-      VectorXd from = start;
-      for (const Index j : travels) {
-        from[j] *= softer;
-      }
-      from.conservativeResize(model.unknowns());
-      from.tail(model.unknowns() - start.size()) = calibrated.fit.x.tail(model.unknowns() - start.size());
-      fitted.fit = fit(model, from, {.iterations = 25});
-      keep_starts(fitted, model);
-      finish(task, fitted, {.thoroughly = true});
-      return fitted;
-    });
+    Explanation one = unless_refused([&] { return fitted_from(task, begun(task, start, calibrated, softer)); });
     if (one.fit.cost < best.fit.cost) {
       best = std::move(one);
     }
-    if (travels.empty()) {
+    if (start.travels.empty()) {
       break;
+    }
+  }
+  if (options.is_open_loop) {
+    const double relevant = rules[policy::relevant] * (calibrated.fit.cost - options.floor_cost);
+    Explanation one = unless_refused([&] {
+      return beside_the_plant(task, top, begun(task, start, calibrated, 1.0), calibrated, relevant, options);
+    });
+    if (best.fit.cost - one.fit.cost > relevant) {
+      best = std::move(one);
     }
   }
   // A fit over whole records that falls far short of what the stretches promise has lost its way, or they were wrong.
@@ -141,7 +255,7 @@ Explained explained(const Task& task, const std::string& top, const SetFinding& 
   if (rules.is_above(policy::kept_promise, closed / std::max(set.closed, 1e-300))) {
     return {.explanation = std::move(best)};
   }
-  return {.refuted = is_whole && (set.space == OutputSpace::title || !in_stretches(task, calibrated))};
+  return {.refuted = start.is_whole && (set.space == OutputSpace::title || !in_stretches(task, calibrated))};
 }
 
 }  // namespace hysteron::diagnosis

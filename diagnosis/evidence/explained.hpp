@@ -18,8 +18,17 @@ struct Explained {
   bool refuted = false;
 };
 
-/// The laws of the set that the text of the diagram has a place for, each begun from where the evidence found it.
+struct ExplainOptions {
+  std::vector<std::string> effects{};  ///< that may be added; empty: all
+  std::vector<std::string> columns{};  ///< of the records that the diagram does not use
+  unsigned threads = 2;
+  bool is_open_loop = false;  ///< the set is of the plant alone, and the diagram has its loop around it
+  double floor_cost = 0.0;    ///< ½Σr² of noise alone
+};
+
+/// The laws of the set that the text of the diagram has a place for, each begun from where the evidence found it. Of a
+/// plant in its loop, with one effect more around it where that one closes a notable part.
 [[nodiscard]] Explained explained(const Task& task, const std::string& top, const SetFinding& set,
-                                  const Explanation& calibrated, const std::vector<std::string>& columns, Rules& rules);
+                                  const Explanation& calibrated, const ExplainOptions& options, Rules& rules);
 
 }  // namespace hysteron::diagnosis

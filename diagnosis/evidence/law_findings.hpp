@@ -30,7 +30,7 @@ struct SetFinding {
   std::vector<LawFinding> laws{};
   double probability = 0.0;
   double closed = 0.0;          ///< of the held-out gap
-  std::vector<double> known{};  ///< changes of the known parameters that go with it
+  std::vector<double> known{};  ///< the known parameters that go with it, to first order
 };
 
 struct FamilyFinding {

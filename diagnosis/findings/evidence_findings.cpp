@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -72,6 +73,12 @@ std::string sizes_of(const EffectFinding& effect, const MissingPicture& picture)
   return sizes.empty() || sizes.size() > 2 ? std::string() : fmt::format("{} {}", fmt::join(sizes, ", "), picture.unit);
 }
 
+/// Whether an effect is one of the set, and not of the loop around the plant that the set is about.
+bool is_of(const SetFinding& set, const EffectFinding& effect) {
+  return std::ranges::any_of(set.laws,
+                             [&](const LawFinding& law) { return law.effect == effect.id && law.edge == effect.edge; });
+}
+
 std::string percent(double share) {
   return fmt::format("{:.0f} %", 100.0 * std::clamp(share, 0.0, 1.0));
 }
@@ -116,6 +123,8 @@ void tell(const Evidence& evidence, const Rules& rules, Diagnosis& result) {
   };
   std::ranges::stable_sort(effects, [](const EffectFinding& a, const EffectFinding& b) { return a.share > b.share; });
   (void)std::stable_partition(effects.begin(), effects.end(), in_front);
+  std::ranges::copy_if(result.effects, std::back_inserter(effects),
+                       [&](const EffectFinding& one) { return !is_of(first, one); });
   result.effects = std::move(effects);
   result.rivals.clear();
   for (const SetFinding& set : evidence.sets) {
@@ -167,8 +176,16 @@ std::string sentence_of(const Diagnosis& found, const Rules& rules) {
   if (!beside.empty()) {
     text += fmt::format(", with {} {}", fmt::join(beside, " and "), percent(first.closed));
   }
-  return fmt::format("{}. The rest, {}, no effect of the library explains.", text,
-                     percent(1.0 - (beside.empty() ? family.alone : first.closed)));
+  std::vector<std::string> around;
+  for (const EffectFinding& one : found.effects) {
+    if (!is_of(first, one)) {
+      around.push_back(fmt::format("{} at {}", words_of_family(one.id), one.edge));
+    }
+  }
+  return fmt::format(
+      "{}. The rest, {}, no effect of the library explains.{}", text,
+      percent(1.0 - (beside.empty() ? family.alone : first.closed)),
+      around.empty() ? std::string() : fmt::format(" Around the plant, its loop has {}.", fmt::join(around, " and ")));
 }
 
 }  // namespace hysteron::diagnosis

@@ -50,8 +50,13 @@ Judged weighed(Judged judged, const Answer& answer, const DiagnosisOptions& opti
       judged.evidence = std::move(evidence);
       break;
     }
-    const Explained fitted =
-        explained(record.task, record.top, evidence.sets.front(), calibrated, record.unused, rules);
+    const Explained fitted = explained(record.task, record.top, evidence.sets.front(), calibrated,
+                                       {.effects = options.effects,
+                                        .columns = record.unused,
+                                        .threads = options.threads,
+                                        .is_open_loop = evidence.is_open_loop,
+                                        .floor_cost = record.floor_cost},
+                                       rules);
     if (!fitted.refuted || evidence.is_open_loop) {
       judged.choose(fitted.explanation ? *fitted.explanation : calibrated);
       judged.unrepeatable.reset();

@@ -30,7 +30,7 @@ std::vector<GapFinding> gaps_of(const Task& task, const Graph& graph, const GapR
     gap.closed = share.closed;
     gap.closed_low = share.low;
     gap.closed_high = share.high;
-    gap.next = next_record(after[output], task.scales[output]);
+    gap.next = next_record(after[output], floors[output].value / task.scales[output], task.scales[output]);
     result.push_back(std::move(gap));
   }
   return result;

@@ -1,18 +1,19 @@
 #include "diagnosis/findings/next_record.hpp"
 
+#include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <vector>
 
 namespace hysteron::diagnosis {
 
-std::optional<NextRecord> next_record(const HeldOut& unseen, double scale) {
+std::optional<NextRecord> next_record(const HeldOut& unseen, double noise, double scale) {
   std::vector<double> logs;
   double squares = 0.0;
   double rows = 0.0;
   for (std::size_t b = 0; b < unseen.squares.size(); ++b) {
     if (unseen.counts[b] > 0.0 && unseen.squares[b] > 0.0) {
-      logs.push_back(0.5 * std::log(unseen.squares[b] / unseen.counts[b]));
+      logs.push_back(0.5 * std::log(std::max(unseen.squares[b] / unseen.counts[b], noise * noise)));
     }
     squares += unseen.squares[b];
     rows += unseen.counts[b];

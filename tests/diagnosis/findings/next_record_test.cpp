@@ -18,7 +18,7 @@ HeldOut blocks_of(const std::vector<double>& rms) {
 }
 
 TEST(NextRecord, EqualBlocksLeaveNoDoubt) {
-  const auto next = next_record(blocks_of({0.5, 0.5, 0.5, 0.5}), 2.0);
+  const auto next = next_record(blocks_of({0.5, 0.5, 0.5, 0.5}), 0.0, 2.0);
   ASSERT_TRUE(next);
   EXPECT_NEAR(next->rms, 1.0, 1e-12);
   EXPECT_NEAR(next->low, 1.0, 1e-12);
@@ -27,8 +27,8 @@ TEST(NextRecord, EqualBlocksLeaveNoDoubt) {
 
 TEST(NextRecord, ScalesWithItsUnit) {
   const HeldOut blocks = blocks_of({0.5, 0.7, 0.4, 1.1});
-  const auto one = next_record(blocks, 1.0);
-  const auto thousand = next_record(blocks, 1000.0);
+  const auto one = next_record(blocks, 0.0, 1.0);
+  const auto thousand = next_record(blocks, 0.0, 1000.0);
   EXPECT_NEAR(thousand->low, 1000.0 * one->low, 1e-9);
   EXPECT_NEAR(thousand->high, 1000.0 * one->high, 1e-9);
   EXPECT_LT(one->low, one->rms);
@@ -36,8 +36,18 @@ TEST(NextRecord, ScalesWithItsUnit) {
 }
 
 TEST(NextRecord, TooFewBlocksSayNothing) {
-  EXPECT_FALSE(next_record(blocks_of({0.5, 0.7}), 1.0));
-  EXPECT_FALSE(next_record(blocks_of({0.0, 0.0, 0.0, 0.0}), 1.0));
+  EXPECT_FALSE(next_record(blocks_of({0.5, 0.7}), 0.0, 1.0));
+  EXPECT_FALSE(next_record(blocks_of({0.0, 0.0, 0.0, 0.0}), 0.0, 1.0));
+}
+
+TEST(NextRecord, ABlockAtRestCountsWithItsNoise) {
+  const auto moving = next_record(blocks_of({0.9, 1.3, 0.7, 1.1}), 0.1, 1.0);
+  const auto rested = next_record(blocks_of({0.9, 1.3, 0.7, 1.1, 1e-9}), 0.1, 1.0);
+  const auto noise = next_record(blocks_of({0.9, 1.3, 0.7, 1.1, 0.1}), 0.1, 1.0);
+  EXPECT_DOUBLE_EQ(rested->low, noise->low);
+  EXPECT_DOUBLE_EQ(rested->high, noise->high);
+  EXPECT_LT(rested->low, moving->low);
+  EXPECT_DOUBLE_EQ(next_record(blocks_of({0.9, 1.3, 0.7, 1.1}), 0.0, 1.0)->high, moving->high);
 }
 
 /// Of log-normal blocks, 95 of 100 further ones lie in the interval.
@@ -51,7 +61,7 @@ TEST(NextRecord, HoldsWhatItPromises) {
     for (double& one : rms) {
       one = std::exp(normal(random));
     }
-    const auto next = next_record(blocks_of(rms), 1.0);
+    const auto next = next_record(blocks_of(rms), 0.0, 1.0);
     const double further = std::exp(normal(random));
     inside += next->low <= further && further <= next->high ? 1 : 0;
   }

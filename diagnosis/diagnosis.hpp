@@ -70,6 +70,14 @@ struct NextRecord {
   double high = 0.0;
 };
 
+/// From where to where an input went while the machine was recorded.
+struct InputRange {
+  std::string signal{};
+  std::string unit{};
+  double low = 0.0;
+  double high = 0.0;
+};
+
 /// The gap of one output, RMS in its unit.
 struct GapFinding {
   std::string signal{};
@@ -177,6 +185,7 @@ struct Diagnosis {
   double unknown_score = 0.0;
   GapFinding gap{};                ///< of the output with the largest gap over its floor
   std::vector<GapFinding> gaps{};  ///< of all outputs
+  std::vector<InputRange> inputs{};
   std::vector<EdgeFinding> edges{};
   std::vector<CutFinding> cuts{};
   GapSplit split{};

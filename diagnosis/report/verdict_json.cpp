@@ -112,16 +112,24 @@ Json gap_of(const GapFinding& gap) {
           {"floor_evidence", gap.floor.evidence}};
 }
 
-/// What each output's RMS will be on a further record.
-Json prediction_of(const std::vector<GapFinding>& gaps) {
+/// What each output's RMS will be on a further record, whose inputs stay where those of this one were.
+Json prediction_of(const Diagnosis& found) {
+  Json inputs = Json::array();
+  for (const InputRange& input : found.inputs) {
+    inputs.push_back({{"signal", input.signal},
+                      {"unit", input.unit},
+                      {"low", number_or_null<Json>(input.low)},
+                      {"high", number_or_null<Json>(input.high)}});
+  }
   Json list = Json::array();
-  for (const GapFinding& gap : gaps) {
+  for (const GapFinding& gap : found.gaps) {
     if (gap.next) {
       list.push_back({{"signal", gap.signal},
                       {"unit", gap.unit},
                       {"rms", number_or_null<Json>(gap.next->rms)},
                       {"low", number_or_null<Json>(gap.next->low)},
-                      {"high", number_or_null<Json>(gap.next->high)}});
+                      {"high", number_or_null<Json>(gap.next->high)},
+                      {"inputs", inputs}});
     }
   }
   return list;
@@ -228,7 +236,7 @@ std::string verdict_json(const Diagnosis& found) {
                   {"budget", budget_of(found.budget)},
                   {"unknown_score", number_or_null<Json>(found.unknown_score)},
                   {"gap", gap_of(found.gap)},
-                  {"prediction", prediction_of(found.gaps)},
+                  {"prediction", prediction_of(found)},
                   {"where", where_of(found)},
                   {"split", split_of(found)},
                   {"cannot_tell", found.cannot_tell},

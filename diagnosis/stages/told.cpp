@@ -31,6 +31,24 @@ std::vector<std::string> ports_of(const Cleaned& record) {
   return names;
 }
 
+std::vector<InputRange> ranges_of_inputs(const Cleaned& record) {
+  std::vector<InputRange> result;
+  for (const Port& input : record.input.program.graph.inputs) {
+    std::vector<double> ends;
+    for (const records::Record& one : record.input.records) {
+      if (const records::Column* const column = one.find(input.name); column != nullptr && !column->values.empty()) {
+        const auto [low, high] = std::ranges::minmax(column->values);
+        ends.insert(ends.end(), {low, high});
+      }
+    }
+    if (!ends.empty() && input.type == Type::Real) {
+      const auto [low, high] = std::ranges::minmax(ends);
+      result.push_back({.signal = input.name, .unit = input.unit, .low = low, .high = high});
+    }
+  }
+  return result;
+}
+
 /// The gap of each output, and where a refit or the effects make one worse.
 void add_gaps(const Judged& judged, const Answer& answer, const Explanation& kept, const DiagnosisOptions& options,
               Diagnosis& result) {
@@ -130,6 +148,7 @@ Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOption
                    .tried = judged.tried};
   std::ranges::copy(judged.warnings, std::back_inserter(result.warnings));
   add_gaps(judged, answer, kept, options, result);
+  result.inputs = ranges_of_inputs(record);
   result.cuts = cuts_at(record.inner, record.task, *record.base.program, materiality_of(record, options));
   add_verdict(judged, answer, kept, options, rules, result);
   const auto families = families_by_effect(record.input.program);

@@ -102,6 +102,17 @@ class Folds(unittest.TestCase):
             found = self.lines(prediction={"signal": "Y", "rms": 0.1, "low": low, "high": high})
             self.assertEqual(found[0].inside, inside)
         self.assertIn("within the stated interval: 0 of 1", whole(found, "head"))
+        self.assertTrue(math.isnan(found[0].alike))
+        self.assertNotIn("of those whose inputs stay", whole(found, "head"))
+
+    def test_where_the_inputs_leave_what_the_interval_is_stated_for(self) -> None:
+        (self.data / "m" / "a.csv").write_text("t,u,y\n" + "".join(f"{k * 0.01:.2f},{1.0 if k < 40 else 5.0},3.0\n" for k in range(50)))
+        for high, alike, printed in ((2.0, 0.8, None), (5.0, 1.0, "for 95 % of their rows: 0 of 1")):
+            stated = {"signal": "Y", "low": 0.0, "high": 0.01, "inputs": [{"signal": "U", "low": 1.0, "high": high}]}
+            found = self.lines(prediction=stated)
+            self.assertAlmostEqual(found[0].alike, alike)
+            self.assertIn(printed or "within the stated interval: 0 of 1", whole(found, "head"))
+            self.assertEqual("of those whose inputs stay" in whole(found, "head"), printed is not None)
 
     def test_without_a_verdict_nothing_is_counted(self) -> None:
         (self.verdicts / "0" / "run.json").write_text(json.dumps({"exit": -9, "seconds": 1.0, "verdict": False}))

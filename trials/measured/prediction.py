@@ -20,6 +20,9 @@ from trials.scoring.verdict import answered, number
 GOAL = 0.90
 """So many kept records have an RMS within the interval that was stated."""
 
+ALIKE = 0.95
+"""A kept record is like the others where so many of its rows have each input within the range that was stated."""
+
 
 @dataclass(frozen=True)
 class Line:
@@ -38,6 +41,8 @@ class Line:
     the diagnosis of the rest added; not a number where it does not run."""
     stated: tuple[float, float] | None
     """The interval that the verdict states for a further record."""
+    alike: float = math.nan
+    """The share of its rows in which each input lies within the range that the interval is stated for; not a number without one."""
 
     @property
     def inside(self) -> bool | None:
@@ -45,15 +50,30 @@ class Line:
         return None if self.stated is None else self.stated[0] <= self.improved <= self.stated[1]
 
 
-def stated_interval(verdict: dict[str, Any], signal: str) -> tuple[float, float] | None:
-    """The 95 % interval of the RMS on a further record, as `prediction` of a verdict states it: an object with signal, rms, low
-    and high, or a list of such objects."""
+def stated(verdict: dict[str, Any], signal: str) -> dict[str, Any]:
+    """What a verdict states as `prediction` of a signal: an object with signal, rms, low, high and inputs, or a list of such
+    objects; empty where it states none."""
     listed = verdict.get("prediction") or []
     for one in listed if isinstance(listed, list) else [listed]:
         if isinstance(one, dict) and str(one.get("signal", signal)).upper() == signal.upper():
-            low, high = number(one.get("low")), number(one.get("high"))
-            return None if math.isnan(low) or math.isnan(high) else (low, high)
-    return None
+            return one
+    return {}
+
+
+def stated_interval(verdict: dict[str, Any], signal: str) -> tuple[float, float] | None:
+    """The 95 % interval of the RMS on a further record."""
+    one = stated(verdict, signal)
+    low, high = number(one.get("low")), number(one.get("high"))
+    return None if math.isnan(low) or math.isnan(high) else (low, high)
+
+
+def share_alike(verdict: dict[str, Any], signal: str, log: str) -> float:
+    """The share of rows of a log in which each input lies within the range that the prediction is stated for."""
+    inside = np.array(True)
+    for one in stated(verdict, signal).get("inputs") or []:
+        values = column(log, str(one["signal"]))
+        inside = inside & (values >= number(one.get("low"))) & (values <= number(one.get("high")))
+    return float(np.mean(inside)) if inside.ndim else math.nan
 
 
 def column(log: str, name: str) -> np.ndarray:
@@ -90,7 +110,7 @@ def lines(fold: Fold, case: Path, verdicts: Path, data: Path, product: str) -> l
             drawn = left(product, case / "plant.st", start, log, signal)
             tuned = left(product, case / "plant.st", case / "params.toml", log, signal)
             improved = left(product, verdicts / "improved.st", verdicts / "improved.toml", log, signal) if (verdicts / "improved.st").exists() else tuned
-            found.append(Line(fold.name, told, signal, rows, rest, drawn, tuned, improved, stated_interval(v, signal)))
+            found.append(Line(fold.name, told, signal, rows, rest, drawn, tuned, improved, stated_interval(v, signal), share_alike(v, signal, kept)))
     return found
 
 
@@ -110,26 +130,29 @@ def _amount(value: float) -> str:
 
 
 def _row(one: Line) -> str:
-    stated = f"{_amount(one.stated[0])} … {_amount(one.stated[1])}" if one.stated else "not stated"
+    interval = f"{_amount(one.stated[0])} … {_amount(one.stated[1])}" if one.stated else "not stated"
+    alike = "" if math.isnan(one.alike) else f"{100 * one.alike:.0f} %"
     inside = {True: "inside", False: "outside", None: ""}[one.inside]
     amounts = "".join(f"{_amount(value):>11s}" for value in (one.drawn, one.tuned, one.improved, one.rest))
-    return f"{one.name[:44]:45s}{one.signal:8s}{one.rows:6d}{amounts}  {stated:20s}{inside:9s}{one.told}".rstrip()
+    return f"{one.name[:44]:45s}{one.signal:8s}{one.rows:6d}{amounts}  {interval:20s}{inside:9s}{alike:>5s}  {one.told}".rstrip()
 
 
 def whole(lines: list[Line], head: str) -> str:
     """The table and what it sums up to."""
-    title = f"{'kept record':45s}{'signal':8s}{'rows':>6s}{'as drawn':>11s}{'tuned':>11s}{'improved':>11s}{'the rest':>11s}  {'stated interval':20s}{'':9s}told of the rest"
+    title = f"{'kept record':45s}{'signal':8s}{'rows':>6s}{'as drawn':>11s}{'tuned':>11s}{'improved':>11s}{'the rest':>11s}  {'stated interval':20s}{'':9s}{'alike':>5s}  told of the rest"
     ran = [one for one in lines if not math.isnan(one.tuned) and not math.isnan(one.improved)]
     ratios = sorted(one.improved / one.tuned for one in ran)
-    stated = share([bool(one.inside) for one in lines if one.inside is not None])
-    low, high = stated.interval
-    reached = "" if not stated.count else ("reached" if stated.value >= GOAL else "missed")
+    every = share([bool(one.inside) for one in lines if one.inside is not None])
+    alike = share([bool(one.inside) for one in lines if one.inside is not None and one.alike >= ALIKE])
+    low, high = every.interval
+    reached = "" if not every.count else ("reached" if every.value >= GOAL else "missed")
     summary = [
         f"kept record nearer by the improved diagram than by the tuned one, by a tenth or more: {sum(x < 0.9 for x in ratios)} of {len(lines)}"
         f"; farther by as much: {sum(x > 1.1 for x in ratios)}",
         f"improved over tuned, RMS on the kept record: median {ratios[len(ratios) // 2]:.2f}, {ratios[0]:.2f} … {ratios[-1]:.2f}" if ratios else "no diagram has run",
-        f"within the stated interval: {stated.hits} of {stated.count} ({100 * low:.0f} … {100 * high:.0f} %), goal ≥ {100 * GOAL:.0f} % {reached}" if stated.count
+        f"within the stated interval: {every.hits} of {every.count} ({100 * low:.0f} … {100 * high:.0f} %), goal ≥ {100 * GOAL:.0f} % {reached}" if every.count
         else "no verdict states an interval for a further record",
+        *([f"of those whose inputs stay in the stated ranges for {100 * ALIKE:.0f} % of their rows: {alike.hits} of {alike.count}"] if alike.count else []),
     ]  # fmt: skip
     what = "RMS that each diagram leaves of the record that was kept out, and the improved one of the rest"
     return "\n".join([head, "", what, title, "-" * len(title), *map(_row, lines), "", *summary, ""])

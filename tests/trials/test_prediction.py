@@ -7,6 +7,7 @@ import math
 import os
 import tempfile
 import unittest
+from dataclasses import replace
 from pathlib import Path
 
 from trials.measured.machines import Fold
@@ -113,6 +114,21 @@ class Folds(unittest.TestCase):
             self.assertAlmostEqual(found[0].alike, alike)
             self.assertIn(printed or "within the stated interval: 0 of 1", whole(found, "head"))
             self.assertEqual("of those whose inputs stay" in whole(found, "head"), printed is not None)
+
+    def test_where_a_record_begins_is_no_part_of_the_machine(self) -> None:
+        integrator = PLANT.replace("G : HY_GAIN := (K := 1.0);", "G : HY_GAIN := (K := 1.0);\n    S : HY_INTEGRAL;")
+        integrator = integrator.replace("Y := G.XOUT;", "S(XIN := G.XOUT);\n  Y := S.XOUT;")
+        for file in (self.verdicts / "0" / "improved.st", self.key["folder"] + "/0/plant.st"):
+            Path(file).write_text(integrator)
+        (self.verdicts / "0" / "improved.toml").write_text("[initial.S]\nSUM = -7.0\n\n" + parameters(2.9))
+        (self.data / "m" / "a.csv").write_text("t,u,y\n" + "".join(f"{k * 0.01:.2f},1.0,{5.0 + 2.9 * 0.01 * k}\n" for k in range(50)))
+        (plain,) = self.lines()
+        self.assertGreater(plain.improved, 10.0)
+        self.folds = (replace(self.folds[0], starts=("S.SUM",)),)
+        (one,) = self.lines()
+        self.assertLess(one.improved, 0.05)
+        self.assertLess(one.tuned, 0.5)  # begun there, too
+        self.assertGreater(one.tuned, one.improved)
 
     def test_without_a_verdict_nothing_is_counted(self) -> None:
         (self.verdicts / "0" / "run.json").write_text(json.dumps({"exit": -9, "seconds": 1.0, "verdict": False}))

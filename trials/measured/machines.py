@@ -155,20 +155,23 @@ class Fold:
     machine: str
     rest: Folder
     kept: Folder
+    starts: tuple[str, ...] = ()
+    """States that a record begins in, where it is cut out of a longer one: no part of the machine, and fitted to the kept
+    record for each diagram."""
 
 
-def _folds(machine: str, whole: Folder, names: tuple[str, ...]) -> Iterator[Fold]:
+def _folds(machine: str, whole: Folder, names: tuple[str, ...], starts: tuple[str, ...] = ()) -> Iterator[Fold]:
     for number, name in enumerate(names):
         rest = tuple(log for other, log in enumerate(whole.logs) if other != number)
         parts = (Folder(whole.folder, whole.diagram, whole.parameters, logs, whole.rewrite) for logs in (rest, (whole.logs[number],)))
-        yield Fold(f"{machine}, without {name}", machine, *parts)
+        yield Fold(f"{machine}, without {name}", machine, *parts, starts)
 
 
 FOLDS = (
     *_folds("car", plain("car-steering", *CARS), tuple(one.file.removesuffix(".csv") for one in CARS)),
     *_folds("xl330 pendulum", plain("xl330-pendulum", *BOTH_SINES), ("sines", "square in time")),
     *_folds("coupled drives", plain("coupled-drives", *DRIVES), ("log 1", "log 2", "log 3")),
-    *_folds("emps, in its loop", emps("loop", *HALVES), ("first half", "second half")),
+    *_folds("emps, in its loop", emps("loop", *HALVES), ("first half", "second half"), ("POSITION.SUM", "SPEED.SUM")),
     *_folds("emps, force from motion", emps("inverse", *HALVES), ("first half", "second half")),
     *_folds("pneumatic cylinder", cylinder(1, 5), ("1 bar", "5 bar")),
 )

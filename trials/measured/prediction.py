@@ -3,7 +3,10 @@ kept. What it leaves there, beside what the diagram leaves as drawn and as tuned
 
 from __future__ import annotations
 
+import json
 import math
+import re
+import subprocess
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -83,6 +86,22 @@ def column(log: str, name: str) -> np.ndarray:
     return np.array([float(row.split(",")[at]) for row in rows])
 
 
+TABLE = re.compile(r"^\[(?:fit|initial|tune)\b[^\]]*\]\n(?:(?!\[).*\n?)*", re.MULTILINE)
+"""The tables of a parameter file that say what is fitted, and where a record began."""
+
+
+def begun(product: str, diagram: Path, parameters: Path, log: Path, starts: tuple[str, ...], out: Path) -> Path:
+    """The parameters with the states in which the record begins, fitted to it, and nothing else; as they are where it has none of
+    these states or no fit is found."""
+    if not starts:
+        return parameters
+    held = out.with_suffix(".held.toml")
+    held.write_text(TABLE.sub("", parameters.read_text()) + f"\n[tune]\ninitial_states = {json.dumps(starts)}\n")
+    command = [product, "tune", str(diagram), "--log", str(log), "--params", str(held), "--out", str(out)]
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120, check=False)
+    return out if done.returncode in (0, 1) and out.exists() else parameters
+
+
 def left(product: str, diagram: Path, parameters: Path, log: Path, signal: str) -> float:
     """RMS of what a diagram leaves of a record."""
     model = outputs(product, diagram, parameters, log, (signal,))
@@ -106,10 +125,16 @@ def lines(fold: Fold, case: Path, verdicts: Path, data: Path, product: str) -> l
         log, start = Path(name) / "kept.csv", Path(name) / "start.toml"
         log.write_text(kept)
         start.write_text(fold.rest.files(data)["params.toml"])
+        diagrams = [(case / "plant.st", start), (case / "plant.st", case / "params.toml")]
+        if (verdicts / "improved.st").exists():
+            diagrams.append((verdicts / "improved.st", verdicts / "improved.toml"))
+        ready = [
+            (diagram, begun(product, diagram, parameters, log, fold.starts, Path(name) / f"begun{number}.toml"))
+            for number, (diagram, parameters) in enumerate(diagrams)
+        ]
         for signal, rest in gaps.items():
-            drawn = left(product, case / "plant.st", start, log, signal)
-            tuned = left(product, case / "plant.st", case / "params.toml", log, signal)
-            improved = left(product, verdicts / "improved.st", verdicts / "improved.toml", log, signal) if (verdicts / "improved.st").exists() else tuned
+            drawn, tuned, *more = (left(product, *each, log, signal) for each in ready)
+            improved = more[0] if more else tuned
             found.append(Line(fold.name, told, signal, rows, rest, drawn, tuned, improved, stated_interval(v, signal), share_alike(v, signal, kept)))
     return found
 

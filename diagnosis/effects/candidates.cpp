@@ -220,14 +220,17 @@ class Enumeration {
                     .wires = wires};
     Insertion insertion{
         .block = kind.block, .instance = instance, .input = kind.input, .output = kind.output, .wires = wires};
-    if (options_.driver && options_.driver->is_rate && !wires.empty()) {
+    const bool is_given = options_.driver && !wires.empty();
+    if (is_given && options_.driver->is_rate) {
       applied.rate = edge.prefix + put_between("HY_DERIVATIVE", "RATE", edge, insertion);
+      applied.wires.front().second += "'";
     }
     if (delayed) {
       applied.delay = edge.prefix + put_between("HY_DELAY", wires.front().first + "1", edge, insertion);
     }
-    if (options_.driver && options_.driver->is_backwards && !wires.empty()) {
+    if (is_given && options_.driver->is_backwards) {
       insertion.wires.front().second.insert(0, "-");
+      applied.wires.front().second.insert(0, "-");
     }
     const auto is_column = [&](const auto& wire) {
       return std::ranges::find(options_.columns, wire.second) != options_.columns.end();

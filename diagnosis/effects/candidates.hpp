@@ -27,7 +27,7 @@ struct Applied {
   std::vector<EffectParameter> parameters{};
   std::vector<std::string> paths{};                          ///< of the parameters, beside them
   std::vector<std::pair<std::string, double>> settings{};    ///< of parameters that are not fitted, by path
-  std::vector<std::pair<std::string, std::string>> wires{};  ///< auxiliary pins and what drives them
+  std::vector<std::pair<std::string, std::string>> wires{};  ///< auxiliary pins and their drivers: SPEED.XOUT, -Y'
   std::string delay{};                                       ///< path of the HY_DELAY before them; empty: none
   std::string rate{};                                        ///< path of the HY_DERIVATIVE before them; empty: none
 

@@ -185,6 +185,17 @@ Explanation begun(const Task& task, const Beginning& start, const Explanation& c
   return result;
 }
 
+/// With the known parameters that were found with the set or, where a run of the whole diagram is nearer with these,
+/// as calibrated: what goes with a set is known to first order.
+Beginning nearer(const Task& task, Beginning start, const Explanation& calibrated) {
+  Beginning other = start;
+  other.x.head(std::ssize(task.known)) = calibrated.fit.x.head(std::ssize(task.known));
+  const auto cost = [&](const Beginning& one) {
+    return unless_refused([&] { return begun(task, one, calibrated, 1.0); }).fit.cost;
+  };
+  return cost(other) < cost(start) ? other : start;
+}
+
 Explanation fitted_from(const Task& task, Explanation one) {
   if (!std::isfinite(one.fit.cost)) {
     return one;
@@ -196,10 +207,9 @@ Explanation fitted_from(const Task& task, Explanation one) {
   return one;
 }
 
-/// The set with one effect more, wherever that one closes most: of those that close `as_much` as the best, in cost, the
-/// simplest. Evidence of a plant that was taken out of its
-/// loop says nothing of the rest of the loop; a sample too many there outweighs all that the plant lacks, and a fit
-/// without it would bend the plant to make up for it.
+/// The set with one effect more, wherever that one closes most: of those whose costs are as good, within `as_much`, the
+/// simplest. Evidence of a plant that was taken out of its loop says nothing of the rest of the loop. A sample too many
+/// there outweighs all that the plant lacks, and a fit without it bends the plant to make up for it.
 Explanation beside_the_plant(const Task& task, const std::string& top, const Explanation& begun,
                              const Explanation& calibrated, double as_much, const ExplainOptions& options) {
   constexpr std::size_t fitted = 6;
@@ -223,9 +233,12 @@ Explanation beside_the_plant(const Task& task, const std::string& top, const Exp
 
 Explained explained(const Task& task, const std::string& top, const SetFinding& set, const Explanation& calibrated,
                     const ExplainOptions& options, Rules& rules) {
-  const Beginning start = start_of(task, top, set, calibrated, options.columns, rules);
+  Beginning start = start_of(task, top, set, calibrated, options.columns, rules);
   if (start.variant.effects.size() == calibrated.variant.effects.size()) {
     return {};
+  }
+  if (!options.is_open_loop) {  // there the loop hides which one is nearer
+    start = nearer(task, std::move(start), calibrated);
   }
   // A friction that lets go within a step has no derivative that would lead a fit: softer ones are tried, too.
   Explanation best{};
@@ -238,8 +251,8 @@ Explained explained(const Task& task, const std::string& top, const SetFinding& 
       break;
     }
   }
-  if (options.is_open_loop) {
-    const double relevant = rules[policy::relevant] * (calibrated.fit.cost - options.floor_cost);
+  const double relevant = rules[policy::relevant] * (calibrated.fit.cost - options.floor_cost);
+  if (options.is_open_loop && best.fit.cost > relevant) {
     Explanation one = unless_refused([&] {
       return beside_the_plant(task, top, begun(task, start, calibrated, 1.0), calibrated, relevant, options);
     });

@@ -89,6 +89,7 @@ TEST(Explained, InInverseDynamicsAFrictionIsAddedAndItsVelocityCountsBackwards) 
   const Explanation& one = *result.explanation;
   EXPECT_THAT(one.variant.text, ContainsRegex("V := -ACC_COULOMB_FRICTION_RATE.XOUT"));
   EXPECT_THAT(one.variant.text, ContainsRegex("ACC_COULOMB_FRICTION_RATE\\(XIN := Y\\)"));
+  EXPECT_EQ(one.variant.effects.front().wires.front().second, "-Y'");
   EXPECT_LT(one.fit.cost, 0.05 * found.calibrated.fit.cost);
   EXPECT_NEAR(value_of(found, one, "LEVEL") * value_of(found, one, "MASS.K"), 0.6, 0.05);
   EXPECT_NEAR(value_of(found, one, "DAMP.K"), 5.0, 0.3);

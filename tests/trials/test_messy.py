@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import unittest
+from unittest import mock
 
 import numpy as np
 
@@ -14,7 +15,9 @@ from trials.generator import beyond
 from trials.generator.case import PLANTS, Builder, Specification, build, from_label, scales
 from trials.generator.effects import Context
 from trials.generator.messy import LEAST_RATIO, tune
+from trials.generator.sets import drawn
 from trials.generator.strata import FULL, ONE_LAW, plan
+from trials.generator.unreachable import Unreachable
 from trials.scoring.figures import score
 from trials.scoring.judge import judge
 from trials.scoring.text import whole
@@ -97,6 +100,23 @@ class Mixed(unittest.TestCase):
                 floor = case.label["noise_rms"][0] / np.ptp(case.clean[:, 0])
                 self.assertLess(floor, 2.5e-4)
                 self.assertGreater(case.label["effects"][0]["ratio"], 0.9 * LEAST_RATIO)
+
+    def test_what_cannot_be_had_as_it_was_drawn_is_drawn_again(self) -> None:
+        asked = []
+
+        def built(specification: Specification) -> str:
+            asked.append(specification.seed)
+            if len(asked) < 3:
+                raise Unreachable("a loop swallows what should dominate")
+            return "case"
+
+        (specification,) = plan("again", {"messy": 1})
+        with mock.patch("trials.generator.sets.build", built):
+            self.assertEqual(drawn(specification), "case")
+        self.assertEqual(asked[0], specification.seed)
+        self.assertEqual(len(set(asked)), 3)
+        with mock.patch("trials.generator.sets.build", side_effect=Unreachable("never")), self.assertRaises(Unreachable):
+            drawn(specification)
 
     def test_parameters_are_those_of_a_least_squares_fit(self) -> None:
         for one, case in zip(SOME, CASES):

@@ -17,6 +17,7 @@ from trials.generator.search import find_size
 from trials.generator.servo import ClosedLoop, Servo
 from trials.generator.tanks import Tanks
 from trials.generator.thermal import Thermal
+from trials.generator.unreachable import Unreachable
 
 PLANTS = ("piezo", "servo_position", "servo_speed", "servo_free", "closed_loop", "thermal", "tanks")
 TIME_STAMP = 1_600_000_000
@@ -167,7 +168,7 @@ class Builder:
             if plant.shows_its_turns():
                 return
             plant.drive(excitation.join(rng, self.grid, self.plan))
-        raise RuntimeError(f"every excitation of plan {self.specification.plan} hides a reversal between two samples")
+        raise Unreachable(f"every excitation of plan {self.specification.plan} hides a reversal between two samples")
 
     def _noise_gain(self, plant: ClosedLoop) -> float:
         """RMS of the current per RMS of the position sensor's noise, through the controller."""

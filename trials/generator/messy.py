@@ -14,6 +14,7 @@ import numpy as np
 
 from trials.generator.grid import Grid
 from trials.generator.plant import Injection
+from trials.generator.unreachable import Unreachable
 
 if TYPE_CHECKING:
     from trials.generator.case import Builder
@@ -63,7 +64,7 @@ def mix(builder: Builder, injections: list[Injection]) -> float:
             one.size = float(np.clip(one.size * np.clip(np.sqrt(ratio), 0.4, 2.5), 1e-9, one.realisation.largest))
     share = 1.0 - energy(builder, rest) / energy(builder, injections)
     if not LEAST - 0.05 <= share <= MOST + 0.04:
-        raise RuntimeError(f"{dominant.effect} beside {', '.join(one.effect for one in rest)} has {share:.2f} of the gap, and {wanted:.2f} was wanted")
+        raise Unreachable(f"{dominant.effect} beside {', '.join(one.effect for one in rest)} has {share:.2f} of the gap, and {wanted:.2f} was wanted")
     return share
 
 

@@ -11,10 +11,12 @@ import signal
 import sys
 import warnings
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
-from trials.generator.case import Specification, build, write
+from trials.generator.case import Case, Specification, build, write
 from trials.generator.strata import seed_of
+from trials.generator.unreachable import Unreachable
 from trials.progress import Progress
 
 
@@ -29,10 +31,25 @@ def case_name(seed: str, number: int) -> str:
     return f"{seed_of(f'name of case {number} of {seed}'):016x}"[:12]
 
 
+DRAWS = 10
+"""So often a case is drawn anew that cannot be had as it was drawn."""
+
+
+def drawn(specification: Specification) -> Case:
+    """A case as it is specified. Where a loop swallows what should dominate, all that is drawn for it is drawn once more;
+    its label tells the seed that served. Raises Unreachable where no draw does."""
+    for number in range(1, DRAWS):
+        try:
+            return build(specification)
+        except Unreachable:
+            specification = replace(specification, seed=seed_of(f"draw {number} after {specification.seed}"))
+    return build(specification)
+
+
 def make_one(specification: Specification, folder: str, label_file: str) -> None:
     """Builds and writes one case; its label appears only once the case is whole."""
     warnings.simplefilter("error", RuntimeWarning)
-    case = build(specification)
+    case = drawn(specification)
     scratch = Path(folder + ".part")
     for left_over in (scratch, Path(folder)):
         shutil.rmtree(left_over, ignore_errors=True)

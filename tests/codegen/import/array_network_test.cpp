@@ -68,7 +68,7 @@ std::string outputs(const std::string& list) {
 }
 
 /// Runs steps with the inputs 1, 2, 3, …; the outputs of the last one.
-std::vector<double> run(const std::string& text, int steps, const std::string& top = "P") {
+std::vector<double> outputs_after(const std::string& text, int steps, const std::string& top = "P") {
   const Program program = compile_text(text, {.top = top, .any_order = true});
   Machine<double> machine(program, 1e-3);
   for (std::size_t i = 0; i < program.graph.inputs.size(); ++i) {
@@ -89,19 +89,19 @@ TEST(ArrayNetwork, ElementsAreReadAndAssignedOneByOne) {
   const std::string text = read(pou(
       "P", inputs(array_variable("V", 0, 2)) + outputs(array_variable("W", 0, 3, "5 6 7")),
       in(1, "V[1]") + in(2, "v[ 2 ]") + add(3, 1, 2) + out(4, "W[0]", 3) + in(5, "V[0] * 10.0") + out(6, "w[1]", 5)));
-  EXPECT_EQ(run(text, 1), (std::vector{5.0, 10.0, 7.0, 0.0})) << text;
+  EXPECT_EQ(outputs_after(text, 1), (std::vector{5.0, 10.0, 7.0, 0.0})) << text;
 }
 
 TEST(ArrayNetwork, AWholeArrayIsOnAWire) {
   const std::string text = read(
       pou("P", inputs(array_variable("V", 0, 1)) + outputs(array_variable("W", 0, 1)), in(1, "V") + out(2, "W", 1)));
-  EXPECT_EQ(run(text, 1), (std::vector{1.0, 2.0})) << text;
+  EXPECT_EQ(outputs_after(text, 1), (std::vector{1.0, 2.0})) << text;
 }
 
 TEST(ArrayNetwork, AnArrayMayBeginElsewhereThanAtZero) {
   const std::string text = read(pou("P", inputs(array_variable("V", 1, 3)) + outputs(array_variable("W", -1, 1)),
                                     in(1, "V[3]") + out(2, "W[-1]", 1) + in(3, "V[1]") + out(4, "W[1]", 3)));
-  EXPECT_EQ(run(text, 1), (std::vector{3.0, 0.0, 1.0})) << text;
+  EXPECT_EQ(outputs_after(text, 1), (std::vector{3.0, 0.0, 1.0})) << text;
 }
 
 /// TOTAL[1] := TOTAL[1] + V[0]: memory, which begins at the first value of the element.
@@ -109,7 +109,7 @@ TEST(ArrayNetwork, AnElementThatIsReadBeforeItIsAssignedIsADelay) {
   const std::string text =
       read(pou("P", inputs(array_variable("V", 0, 1)) + outputs(array_variable("TOTAL", 0, 1, "3 4")),
                in(1, "TOTAL[1]") + in(2, "V[0]") + add(3, 1, 2) + out(4, "TOTAL[1]", 3)));
-  EXPECT_EQ(run(text, 3), (std::vector{3.0, 7.0})) << text;
+  EXPECT_EQ(outputs_after(text, 3), (std::vector{3.0, 7.0})) << text;
 }
 
 /// Y shows what W was a cycle ago, of each element.
@@ -118,8 +118,8 @@ TEST(ArrayNetwork, AWholeArrayOfTheLastCycleIsADelayOfEachElement) {
   const std::string text = read(pou(
       "P", inputs(array_variable("V", 0, 1)) + outputs(array_variable("Y", 0, 1) + array_variable("W", 0, 1, "8 9")),
       network));
-  EXPECT_EQ(run(text, 1), (std::vector{8.0, 9.0, 1.0, 2.0})) << text;
-  EXPECT_EQ(run(text, 2), (std::vector{1.0, 2.0, 1.0, 2.0})) << text;
+  EXPECT_EQ(outputs_after(text, 1), (std::vector{8.0, 9.0, 1.0, 2.0})) << text;
+  EXPECT_EQ(outputs_after(text, 2), (std::vector{1.0, 2.0, 1.0, 2.0})) << text;
 }
 
 TEST(ArrayNetwork, ABlockTakesAndGivesAnArray) {
@@ -137,7 +137,7 @@ TEST(ArrayNetwork, ABlockTakesAndGivesAnArray) {
                   in(1, "V") + block +
                       R"(<outVariable localId="3"><connectionPointIn><connection refLocalId="2" formalParameter="B"/>)"
                       "</connectionPointIn><expression>W</expression></outVariable>"));
-  EXPECT_EQ(run(text, 1), (std::vector{2.0, 1.0})) << text;
+  EXPECT_EQ(outputs_after(text, 1), (std::vector{2.0, 1.0})) << text;
 }
 
 /// The cause of a refusal.

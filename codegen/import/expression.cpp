@@ -30,6 +30,14 @@ std::optional<language::SourceFile> parsed(const std::string& text, language::Ex
   return file;
 }
 
+/// Of V[2] and V[-1].
+std::optional<std::int64_t> constant_place(const language::SourceFile& file, language::ExpressionId index) {
+  double number = 0.0;
+  Type type{};
+  const bool known = index != language::no_expression && constant_value(file, index, number, type);
+  return known && type == Type::Int ? std::optional(static_cast<std::int64_t>(number)) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::string> rewrite_expression(const std::string& text, const Rename& rename) {
@@ -52,9 +60,12 @@ std::optional<std::string> rewrite_expression(const std::string& text, const Ren
   std::size_t end = before.size();
   for (const language::Expression* const one : references) {
     const auto& reference = std::get<language::Reference>(one->node);
+    NameRead read{.name = std::string(reference.name.text), .pin = std::string(reference.pin.text)};
+    read.place = read.pin.empty() ? constant_place(*file, reference.index) : std::nullopt;
+    const language::Span& last = read.pin.empty() ? reference.name.span : reference.pin.span;
     result += file->text->substr(end, one->span.offset - end);
-    result += rename(std::string(reference.name.text), std::string(reference.pin.text));
-    end = one->span.offset + one->span.length;
+    result += rename(read);
+    end = read.place ? one->span.offset + one->span.length : last.offset + last.length;
   }
   result += text.substr(end - before.size());
   return plain ? result : "(" + result + ")";

@@ -8,6 +8,7 @@
 #include "codegen/import/types.hpp"
 #include "codegen/plcopen/tc6.hpp"
 #include "support/names.hpp"
+#include "support/trimmed.hpp"
 
 namespace hysteron::import {
 
@@ -37,8 +38,9 @@ Value applied(const plcopen::OperatorFunction* own, const std::string& name, con
       result.text += (result.text.empty() ? "" : ", ") + one.text;
     }
     result.text = fmt::format("{}({})", name, result.text);
-    result.type = name == "TRUNC" || name.ends_with("_TO_DINT") ? Type::Int
-                  : name.ends_with("_TO_LREAL")                 ? Type::Real
+    const Carried from = result.type.value_or(Type::Real);
+    result.type = name == "TRUNC" || name.ends_with("_TO_DINT") ? from.of(Type::Int)
+                  : name.ends_with("_TO_LREAL")                 ? from.of(Type::Real)
                                                                 : result.type;
     return result;
   }
@@ -49,7 +51,7 @@ Value applied(const plcopen::OperatorFunction* own, const std::string& name, con
     result.text = negated(arguments.front().text);
     return result;
   }
-  result.type = own->is_comparison ? Type::Bool : result.type;
+  result.type = own->is_comparison ? result.type.value_or(Type::Bool).of(Type::Bool) : result.type;
   result.text = arguments.front().text;
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     result.text = fmt::format("({} {} {})", result.text, own->symbol, arguments[i].text);
@@ -61,19 +63,24 @@ std::string negated(const std::string& text) {
   return fmt::format("(NOT {})", text);
 }
 
-std::optional<Type> type_of_text(const Variables& variables, const std::string& text) {
-  const auto variable = variables.find(in_capitals(text));
+std::optional<Carried> type_of_text(const Variables& variables, const std::string& text) {
+  const auto bracket = text.ends_with(']') ? text.find('[') : std::string::npos;
+  const auto variable = variables.find(in_capitals(trimmed(std::string_view(text).substr(0, bracket))));
   if (variable != variables.end()) {
     const auto known = known_type(variable->second->type);
-    return known ? std::optional(known->type) : std::nullopt;
+    if (!known) {
+      return std::nullopt;
+    }
+    return bracket == std::string::npos ? known->carried : Carried(known->carried.type);
   }
-  return type_of_literal(with_known_literals(text));
+  const auto literal = type_of_literal(with_known_literals(text));
+  return literal ? std::optional<Carried>(*literal) : std::nullopt;
 }
 
-std::optional<Type> result_type(const DrawnPou& pou, const Variables& variables, const DrawnElement& function) {
+std::optional<Carried> result_type(const DrawnPou& pou, const Variables& variables, const DrawnElement& function) {
   const plcopen::OperatorFunction* const own = plcopen::operator_of(function.text);
   if (own != nullptr && own->is_comparison) {
-    return Type::Bool;
+    return Carried(Type::Bool);
   }
   for (const DrawnPin& pin : function.inputs) {
     for (const Link& link : pin.links) {

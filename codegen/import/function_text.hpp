@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codegen/import/drawing.hpp"
+#include "codegen/import/types.hpp"
 #include "codegen/plcopen/functions.hpp"
 #include "codegen/trace/block_type.hpp"
 
@@ -16,7 +17,7 @@ namespace hysteron::import {
 
 struct Value {
   std::string text{};
-  std::optional<Type> type{};
+  std::optional<Carried> type{};
 };
 
 /// The elements that do something, by their place in the POU. Those with an order come first, then what assigns, then
@@ -35,12 +36,12 @@ struct Value {
 /// The variables of a POU, by name in capitals.
 using Variables = std::map<std::string, const DrawnVariable*>;
 
-/// The type of a variable or a literal.
-[[nodiscard]] std::optional<Type> type_of_text(const Variables& variables, const std::string& text);
+/// What a variable, an element of one, or a literal carries.
+[[nodiscard]] std::optional<Carried> type_of_text(const Variables& variables, const std::string& text);
 
-/// The type of what a function gives, by the variables that are connected to it.
-[[nodiscard]] std::optional<Type> result_type(const DrawnPou& pou, const Variables& variables,
-                                              const DrawnElement& function);
+/// What a function gives, by the variables that are connected to it.
+[[nodiscard]] std::optional<Carried> result_type(const DrawnPou& pou, const Variables& variables,
+                                                 const DrawnElement& function);
 
 /// Whether a POU of the project, or else a block of the library, has an input.
 [[nodiscard]] bool has_input(const DrawnPou* own, const BlockType* block, std::string_view pin);

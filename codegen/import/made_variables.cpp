@@ -2,13 +2,21 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "codegen/graph/names.hpp"
 #include "codegen/graph/text_order.hpp"
 #include "support/names.hpp"
 
 namespace hysteron::import {
+
+std::string identifier_of(std::string_view value) {
+  std::string name;
+  for (const char letter : value) {
+    if (letter != ']') {
+      name += letter == '.' || letter == '[' ? '_' : letter == '-' ? 'm' : letter;
+    }
+  }
+  return name;
+}
 
 void MadeVariables::take(const std::string& name) {
   taken_.insert(in_capitals(name));
@@ -25,9 +33,7 @@ std::string MadeVariables::new_name(const std::string& base) {
 std::string MadeVariables::delayed(const std::string& value, Type type, const std::string& start) {
   Delay& delay = delays_[in_capitals(value)];
   if (delay.instance.empty()) {
-    std::string base = value + "_LAST";
-    std::ranges::replace(base, '.', '_');
-    delay = {.instance = new_name(base), .value = value, .start = start, .type = type};
+    delay = {.instance = new_name(identifier_of(value) + "_LAST"), .value = value, .start = start, .type = type};
   }
   return delay.instance + ".XOUT";
 }

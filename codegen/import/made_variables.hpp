@@ -4,10 +4,14 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "blocks/description.hpp"
 
 namespace hysteron::import {
+
+/// A value as a part of a name: F.Y[-1] is F_Y_m1.
+[[nodiscard]] std::string identifier_of(std::string_view value);
 
 class MadeVariables {
  public:

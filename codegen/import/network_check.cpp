@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <utility>
 
 #include "codegen/import/expression.hpp"
 #include "codegen/import/types.hpp"
 #include "codegen/plcopen/tc6.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 
@@ -48,6 +50,35 @@ std::vector<Objection> undecided_assignments(const Assigners& assigners) {
   return result;
 }
 
+/// Elements of arrays that are assigned, which there are not, or beside the whole.
+std::vector<Objection> wrong_elements(const DrawnPou& pou, const Assigners& assigners) {
+  std::vector<Objection> result;
+  for (const auto& [key, elements] : assigners) {
+    const auto place = element_of(key);
+    const std::string name = key.substr(0, key.find('['));
+    const DrawnVariable* const variable = find_variable(pou, name);
+    const auto known = variable == nullptr ? std::nullopt : known_type(variable->type);
+    if (key.find('[') == std::string::npos || variable == nullptr) {
+      continue;
+    }
+    const auto object = [&](std::string why, std::string mend) {
+      result.push_back({.element = elements.front(), .why = std::move(why), .mend = std::move(mend)});
+    };
+    if (!place) {
+      object(fmt::format("it assigns an element of {} whose place is no constant", variable->name),
+             "Write the number of the element, or assign it in a POU of Structured Text.");
+    } else if (!known || !known->carried.has_place(place->index)) {
+      object(fmt::format("it assigns {}, and {} is of type {}", key, variable->name, variable->type),
+             "Assign an element that it has.");
+    } else if (assigners.contains(name)) {
+      object(fmt::format("it assigns an element of {}, which localId {} assigns as a whole", variable->name,
+                         assigners.at(name).front()->id),
+             "Assign all of it in one of the two ways.");
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, const Assigners& assigners) {
@@ -55,6 +86,7 @@ std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, 
       tc6::in_variable, tc6::out_variable, tc6::block,      tc6::connector, tc6::continuation,    tc6::contact,
       tc6::coil,        tc6::left_rail,    tc6::right_rail, tc6::comment,   tc6::in_out_variable, "vendorElement"};
   std::vector<Objection> result = undecided_assignments(assigners);
+  std::ranges::move(wrong_elements(pou, assigners), std::back_inserter(result));
   std::set<std::string> instances;
   for (const DrawnElement& element : pou.elements) {
     const auto object = [&](std::string why, std::string mend) {
@@ -114,11 +146,18 @@ bool hands_back(const DrawnElement& block, std::string_view pin, const Targets& 
   return called != targets.end() && called->second.contains(in_capitals(pin));
 }
 
+std::string target_key(std::string_view text) {
+  std::string key = in_capitals(text);
+  std::erase(key, ' ');
+  const auto element = element_of(key);
+  return element ? element_name(element->vector, element->index) : key;
+}
+
 Assigners assigners_in(const DrawnPou& pou, const Targets& called) {
   Assigners assigners;
   for (const DrawnElement& element : pou.elements) {
     if (element.kind == tc6::out_variable || element.kind == tc6::coil) {
-      assigners[in_capitals(element.text)].push_back(&element);
+      assigners[target_key(element.text)].push_back(&element);
     }
     for (const DrawnPin& pin : element.both) {
       if (const std::string name = handed_over(pou, pin); !name.empty() && hands_back(element, pin.name, called)) {
@@ -136,7 +175,7 @@ Targets targets_of_all(const std::string& file, const OwnBlocks& own) {
     for (const auto& [name, pou] : own) {
       std::set<std::string> now;
       for (const auto& [target, assigners] : assigners_in(*pou, targets)) {
-        now.insert(target);
+        now.insert(target.substr(0, target.find('[')));
       }
       changed = changed || now != targets[name];
       targets[name] = std::move(now);

@@ -27,8 +27,11 @@ using Targets = std::map<std::string, std::set<std::string>>;
 /// handed on through too many blocks.
 [[nodiscard]] Targets targets_of_all(const std::string& file, const OwnBlocks& own);
 
-/// What assigns each variable of one network, by its name in capitals, as the file has it: output variables, coils, and
-/// blocks that hand a VAR_IN_OUT back.
+/// The name by which an element's text is found among targets: in capitals, without blanks; V[2] for an element of V.
+[[nodiscard]] std::string target_key(std::string_view text);
+
+/// What assigns each variable of one network, or each element of one, by `target_key`, as the file has it: output
+/// variables, coils, and blocks that hand a VAR_IN_OUT back.
 using Assigners = std::map<std::string, std::vector<const DrawnElement*>>;
 [[nodiscard]] Assigners assigners_in(const DrawnPou& pou, const Targets& called);
 

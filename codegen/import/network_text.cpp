@@ -12,8 +12,8 @@
 #include "codegen/graph/text_order.hpp"
 #include "codegen/import/expression.hpp"
 #include "codegen/import/function_text.hpp"
-#include "codegen/import/made_variables.hpp"
 #include "codegen/import/network_check.hpp"
+#include "codegen/import/network_variables.hpp"
 #include "codegen/import/types.hpp"
 #include "codegen/plcopen/functions.hpp"
 #include "codegen/plcopen/tc6.hpp"
@@ -34,7 +34,7 @@ using plcopen::OperatorFunction;
 class Reader {
  public:
   Reader(const std::string& file, const DrawnPou& pou, const OwnBlocks& own, const Targets& targets)
-      : file_(file), pou_(pou), own_(own), targets_(targets) {
+      : file_(file), pou_(pou), own_(own), targets_(targets), variables_(pou, made_) {
     for (std::size_t i = 0; i < pou.elements.size(); ++i) {
       const DrawnElement& element = pou.elements[i];
       by_id_.emplace(element.id, i);
@@ -47,11 +47,6 @@ class Reader {
         }
       }
     }
-    for (const DrawnVariable& variable : pou.variables) {
-      variables_made_.take(variable.name);
-      variables_made_.take(name_of_output(variable));
-      variables_.emplace(in_capitals(variable.name), &variable);
-    }
     states_.resize(pou.elements.size());
   }
 
@@ -60,8 +55,7 @@ class Reader {
     for (const std::size_t i : order_of_execution(pou_)) {
       run_element(i);
     }
-    made_.statements += variables_made_.statements();
-    made_.locals += variables_made_.declarations();
+    variables_.finish();
     if (refused_.has_errors()) {
       throw InputError(std::move(refused_));
     }
@@ -76,11 +70,6 @@ class Reader {
     Value value{};           ///< of a function, once done
     std::string variable{};  ///< that holds it
   };
-  struct Assigned {
-    std::string name{};  ///< that holds the value now
-    std::optional<std::uint64_t> order{};
-  };
-
   void refuse(const DrawnElement& element, std::string_view why, std::string mend) {
     if (!told_.insert(&element).second) {
       return;
@@ -98,9 +87,7 @@ class Reader {
     for (const Objection& one : objections_to(pou_, own_, assigners)) {
       refuse(*one.element, one.why, one.mend);
     }
-    for (const auto& [name, elements] : assigners) {
-      to_come_.emplace(name, elements.size());
-    }
+    variables_.expect(assigners);
   }
 
   // --- elements ---
@@ -123,8 +110,8 @@ class Reader {
   }
 
   void run_assignment(const DrawnElement& element) {
-    const auto target = variables_.find(in_capitals(element.text));
-    if (target == variables_.end()) {
+    const std::string key = target_key(element.text);
+    if (variables_.find(key.substr(0, key.find('['))) == nullptr) {
       return refuse(element, "it assigns what the POU does not declare",
                     "Declare it as an output or a local variable.");
     }
@@ -132,29 +119,11 @@ class Reader {
     if (value.text.empty()) {
       return refuse(element, "nothing is connected to it", "Connect it, or take it out.");
     }
-    assign(element, *target->second, element.negated ? negated(value.text) : value.text);
+    variables_.assign(key, element.negated ? negated(value.text) : value.text, element.order, refusing(element));
   }
 
-  /// A text assigns a variable once. What the drawing assigns before has a variable of its own, which is read until
-  /// then.
-  void assign(const DrawnElement& element, const DrawnVariable& variable, const std::string& value) {
-    const std::string key = in_capitals(variable.name);
-    const auto before = assigned_.find(key);
-    if (before != assigned_.end() && element.order < before->second.order) {
-      refuse(element,
-             fmt::format("it assigns {} behind an element of a higher order, which feeds what runs earlier", key),
-             "Give what is fed the higher executionOrderId.");
-    }
-    const bool last = --to_come_.at(key) == 0;
-    const auto type = known_type(variable.type);
-    const std::string target = last ? name_of_output(variable) : variables_made_.new_name(variable.name + "_BEFORE");
-    if (last) {
-      made_.assigned.push_back(in_capitals(target));
-    } else if (type) {
-      made_.locals += fmt::format("    {} : {};\n", target, type_name(type->type));
-    }
-    made_.statements += fmt::format("  {} := {};\n", target, value);
-    assigned_[key] = {.name = target, .order = element.order};
+  Refuse refusing(const DrawnElement& element) {
+    return [this, &element](std::string why, std::string mend) { refuse(element, why, std::move(mend)); };
   }
 
   void run_function(const DrawnElement& element, State& state) {
@@ -185,8 +154,8 @@ class Reader {
     const bool shared = readers_[element.id] > 1 || state.value.text.size() > longest_expression;
     if ((shared || !state.variable.empty()) && state.value.type) {
       const std::string variable =
-          state.variable.empty() ? variables_made_.new_name(fmt::format("{}_{}", name, element.id)) : state.variable;
-      made_.locals += fmt::format("    {} : {};\n", variable, type_name(*state.value.type));
+          state.variable.empty() ? variables_.new_name(fmt::format("{}_{}", name, element.id)) : state.variable;
+      variables_.declare(variable, *state.value.type);
       made_.statements += fmt::format("  {} := {};\n", variable, state.value.text);
       state.value.text = variable;
     }
@@ -212,13 +181,13 @@ class Reader {
   }
 
   void run_call(const DrawnElement& element) {
-    const auto declared = variables_.find(in_capitals(element.instance));
+    const DrawnVariable* const declared = variables_.find(element.instance);
     const auto own = own_.find(in_capitals(element.text));
     const BlockType* const block = own == own_.end() ? known_block(element.text) : nullptr;
     if (own == own_.end() && block == nullptr) {
       return refuse_unknown(element);
     }
-    if (declared == variables_.end()) {
+    if (declared == nullptr) {
       return refuse(element, "the instance is not declared", "Declare it in the POU.");
     }
     std::string arguments;
@@ -252,11 +221,12 @@ class Reader {
       }
     }
     called_.insert(in_capitals(element.instance));
-    made_.statements += fmt::format("  {}({});\n", declared->second->name, arguments);
+    made_.statements += fmt::format("  {}({});\n", declared->name, arguments);
     for (const DrawnPin& pin : element.both) {  // what it hands back
-      if (const auto variable = variables_.find(handed_over(pou_, pin));
-          variable != variables_.end() && hands_back(element, pin.name, targets_)) {
-        assign(element, *variable->second, pin_value(element, element.instance, pin.name).text);
+      const std::string variable = handed_over(pou_, pin);
+      if (!variable.empty() && hands_back(element, pin.name, targets_)) {
+        variables_.assign(variable, pin_value(element, element.instance, pin.name).text, element.order,
+                          refusing(element));
       }
     }
   }
@@ -348,15 +318,15 @@ class Reader {
     if (state.done) {
       return state.value;
     }
-    const std::optional<Type> type = result_type(pou_, variables_, element);
+    const std::optional<Carried> type = result_type(pou_, variables_.all(), element);
     if (!type) {
       refuse(element, "it is in a loop, and its type cannot be told", "Put a variable into the loop.");
       return {"FALSE", std::nullopt};
     }
     if (state.variable.empty()) {
-      state.variable = variables_made_.new_name(fmt::format("{}_{}", in_capitals(element.text), element.id));
+      state.variable = variables_.new_name(fmt::format("{}_{}", in_capitals(element.text), element.id));
     }
-    return delayed(state.variable, *type);
+    return variables_.delayed(state.variable, *type);
   }
 
   Value output_value(const DrawnElement& element, const std::string& pin) {
@@ -372,28 +342,27 @@ class Reader {
 
   /// INSTANCE.PIN, as a wire or a text names it.
   Value pin_value(const DrawnElement& reader, const std::string& instance, const std::string& pin) {
-    const auto declared = variables_.find(in_capitals(instance));
-    if (declared == variables_.end()) {
+    const DrawnVariable* const declared = variables_.find(instance);
+    if (declared == nullptr) {
       refuse(reader, fmt::format("{} is not declared", instance), "Declare it in the POU.");
       return {"FALSE", std::nullopt};
     }
-    const std::string text = fmt::format("{}.{}", declared->second->name, pin);
+    const std::string text = fmt::format("{}.{}", declared->name, pin);
     const bool called = called_.contains(in_capitals(instance));
-    if (const auto own = own_.find(in_capitals(declared->second->type)); own != own_.end()) {
+    if (const auto own = own_.find(in_capitals(declared->type)); own != own_.end()) {
       for (const DrawnVariable& one : own->second->variables) {
         using Section = DrawnVariable::Section;
         if ((one.section == Section::Output || one.section == Section::Both) && equal_ignoring_case(one.name, pin)) {
           const auto type = known_type(one.type);
-          const std::string output = fmt::format("{}.{}", declared->second->name, name_of_output(one));
-          return called || !type ? Value{output, type ? std::optional(type->type) : std::nullopt}
-                                 : delayed(output, type->type);
+          const std::string output = fmt::format("{}.{}", declared->name, name_of_output(one));
+          return called || !type ? Value{output, type ? std::optional(type->carried) : std::nullopt}
+                                 : variables_.delayed(output, type->carried);
         }
       }
-    } else if (const BlockType* const block = known_block(declared->second->type)) {
+    } else if (const BlockType* const block = known_block(declared->type)) {
       for (std::size_t i = 0; i < block->outputs.size(); ++i) {
         if (equal_ignoring_case(block->outputs[i].name, pin)) {
-          return block_output(reader,
-                              {block, i, in_capitals(instance), find_block_type(declared->second->type) != nullptr},
+          return block_output(reader, {block, i, in_capitals(instance), find_block_type(declared->type) != nullptr},
                               {text, block->outputs[i].type}, called);
         }
       }
@@ -421,16 +390,12 @@ class Reader {
       refuse(reader, fmt::format("it reads {} behind its call, where a PLC has the next cycle's value", value.text),
              "Let it run before the block: give it the lower executionOrderId.");
     }
-    return called || remembers ? value : delayed(value.text, *value.type);
-  }
-
-  Value delayed(const std::string& text, Type type, const std::string& start = {}) {
-    return {variables_made_.delayed(text, type, start), type};
+    return called || remembers ? value : variables_.delayed(value.text, *value.type);
   }
 
   Value expression_value(const DrawnElement& element, const std::string& text) {
-    const auto read = [&](const std::string& name, const std::string& pin) {
-      return pin.empty() ? variable_text(element, name) : pin_value(element, name, pin).text;
+    const auto read = [&](const NameRead& name) {
+      return name.pin.empty() ? variables_.read(name, refusing(element)) : pin_value(element, name.name, name.pin).text;
     };
     const auto rewritten = rewrite_expression(with_known_literals(text), read);
     if (!rewritten) {
@@ -439,31 +404,13 @@ class Reader {
       return {"FALSE", std::nullopt};
     }
     const auto dot = text.find('.');
-    std::optional<Type> type = type_of_text(variables_, text);
-    if (!type && dot != std::string::npos && variables_.contains(in_capitals(text.substr(0, dot)))) {
-      type = output_type(variables_.at(in_capitals(text.substr(0, dot)))->type, text.substr(dot + 1));
+    std::optional<Carried> type = type_of_text(variables_.all(), text);
+    if (const DrawnVariable* const instance = variables_.find(text.substr(0, dot));
+        !type && dot != std::string::npos && instance != nullptr) {
+      const auto of_pin = output_type(instance->type, text.substr(dot + 1));
+      type = of_pin ? std::optional<Carried>(*of_pin) : std::nullopt;
     }
     return {*rewritten, type};
-  }
-
-  std::string variable_text(const DrawnElement& element, const std::string& name) {
-    const auto found = variables_.find(in_capitals(name));
-    if (found == variables_.end()) {
-      refuse(element, fmt::format("{} is not declared in the POU", name), "Make it an input of the POU.");
-      return "FALSE";
-    }
-    const DrawnVariable& variable = *found->second;
-    if (const auto assigned = assigned_.find(in_capitals(name)); assigned != assigned_.end()) {
-      return assigned->second.name;
-    }
-    if (variable.section == DrawnVariable::Section::Both) {
-      made_.taken_in.push_back(in_capitals(name));
-      return variable.name;
-    }
-    const auto type = known_type(variable.type);
-    return to_come_.contains(in_capitals(name)) && type
-               ? delayed(variable.name, type->type, with_known_literals(variable.initial)).text
-               : variable.name;
   }
 
   const std::string& file_;
@@ -473,16 +420,13 @@ class Reader {
   std::unordered_map<std::uint64_t, std::size_t> by_id_;
   std::map<std::string, std::size_t> connectors_;
   std::unordered_map<std::uint64_t, std::size_t> readers_;  ///< by localId: how many wires leave it
-  Variables variables_;
-  std::vector<State> states_;  ///< by element
-  MadeVariables variables_made_;
-  std::map<std::string, std::size_t> to_come_;  ///< by target, in capitals: how many assignments of it
-  std::map<std::string, Assigned> assigned_;    ///< by target, in capitals
+  std::vector<State> states_;                               ///< by element
   std::set<std::string> called_;
   std::set<const DrawnElement*> told_;
   std::size_t depth_ = 0;
   Diagnostics refused_;
   NetworkText made_;
+  NetworkVariables variables_;
 };
 
 }  // namespace

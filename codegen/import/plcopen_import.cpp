@@ -285,7 +285,7 @@ class Importer {
       if (!is_block) {
         refuse(variable.line,
                fmt::format("{} of {} is of type {}, which no diagram has", variable.name, pou.name, variable.type),
-               "Use LREAL, REAL, DINT, INT, BOOL, WORD, TIME or a function block.");
+               "Use LREAL, REAL, DINT, INT, BOOL, WORD, TIME, an array of one of them, or a function block.");
         return "";
       }
       const bool called = std::ranges::find(network.called, key) != network.called.end();
@@ -303,13 +303,26 @@ class Importer {
     if (assigned) {
       initial.clear();  // its first value is that of the delay, where one reads it
     } else if (initial.empty() && variable.section != DrawnVariable::Section::Input) {
-      initial = literal_text(known->type, 0.0);
+      initial = literal_text(known->carried.type, 0.0);
     }
-    if (!initial.empty() && known->type == Type::Real && initial.find_first_of(".#") == std::string::npos) {
-      initial += ".0";
+    return fmt::format("    {} : {}{};{}\n", variable.name, import::declared_text(known->carried),
+                       initial.empty() ? "" : " := " + value_text(known->carried, initial),
+                       comment(comment_of(variable.remark)));
+  }
+
+  /// A first value as a text has it; of a vector the list, in which what is not given is 0.
+  static std::string value_text(const import::Carried& carried, const std::string& initial) {
+    if (!carried.is_vector()) {
+      return import::real_text(carried.type, initial);
     }
-    return fmt::format("    {} : {}{};{}\n", variable.name, type_name(known->type),
-                       initial.empty() ? "" : " := " + initial, comment(comment_of(variable.remark)));
+    const std::vector<std::string> given = import::elements_of_list(initial);
+    std::string list;
+    for (std::int64_t place = carried.low; place <= carried.high; ++place) {
+      const auto at = static_cast<std::size_t>(place - carried.low);
+      list += (list.empty() ? "" : ", ") +
+              (at < given.size() ? import::real_text(carried.type, given[at]) : literal_text(carried.type, 0.0));
+    }
+    return "[" + list + "]";
   }
 
   const std::string& file_;

@@ -6,9 +6,13 @@
 #include <array>
 #include <utility>
 
+#include "codegen/graph/names.hpp"
+#include "codegen/graph/vectors.hpp"
 #include "codegen/language/time_literal.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
+#include "support/trimmed.hpp"
+#include "support/whole_number.hpp"
 
 namespace hysteron::import {
 namespace {
@@ -58,9 +62,53 @@ bool is_letter(char c) {
 }  // namespace
 
 std::optional<KnownType> known_type(std::string_view name) {
+  constexpr std::string_view array = "ARRAY";
+  constexpr std::string_view of = "] OF ";
+  constexpr int most_places = 1'000'000;  // bounds lie within ± this
+  if (equal_ignoring_case(name.substr(0, array.size()), array) && name.find('[') != std::string_view::npos) {
+    const auto begin = name.find('[') + 1;
+    const auto dots = name.find("..", begin);
+    const auto end = in_capitals(name).find(of);
+    if (dots == std::string_view::npos || end == std::string::npos || dots > end) {
+      return std::nullopt;
+    }
+    const auto low = whole_number(trimmed(name.substr(begin, dots - begin)), -most_places, most_places);
+    const auto high = whole_number(trimmed(name.substr(dots + 2, end - dots - 2)), -most_places, most_places);
+    auto element = known_type(trimmed(name.substr(end + of.size())));
+    if (!low || !high || *high < *low || *high - *low >= static_cast<int>(longest_vector) || !element ||
+        element->carried.is_vector()) {
+      return std::nullopt;
+    }
+    element->carried = {element->carried.type, *low, *high};
+    return element;
+  }
   const auto* const found =
       std::ranges::find_if(types, [&](const TypeRow& one) { return equal_ignoring_case(one.name, name); });
   return found == types.end() ? std::nullopt : std::optional(found->known);
+}
+
+std::string declared_text(const Carried& carried) {
+  return carried.is_vector() ? fmt::format("ARRAY[{}..{}] OF {}", carried.low, carried.high, type_name(carried.type))
+                             : std::string(type_name(carried.type));
+}
+
+std::string real_text(Type type, std::string literal) {
+  const bool is_whole = type == Type::Real && !literal.empty() && literal.find_first_of(".#") == std::string::npos;
+  return is_whole ? literal + ".0" : literal;
+}
+
+std::vector<std::string> elements_of_list(std::string_view text) {
+  std::vector<std::string> list;
+  if (!text.starts_with('[') || !text.ends_with(']')) {
+    return list;
+  }
+  text = text.substr(1, text.size() - 2);
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    list.emplace_back(trimmed(text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return list;
 }
 
 const BlockType* known_block(std::string_view name) {
@@ -115,7 +163,9 @@ std::string with_known_literals(std::string_view text) {
         continue;
       }
       const auto known = known_type(word);
-      word = known && known->type == Type::Real ? "LREAL" : known && known->type == Type::Int ? "DINT" : word;
+      word = known && known->carried.type == Type::Real  ? "LREAL"
+             : known && known->carried.type == Type::Int ? "DINT"
+                                                         : word;
     }
     result += word;
     i = end;

@@ -1,22 +1,50 @@
 // What types, functions and literals of other systems are in a diagram.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "blocks/description.hpp"
 #include "codegen/trace/block_type.hpp"
 
 namespace hysteron::import {
 
-struct KnownType {
+/// What a variable or a wire carries: one value, or a vector of them.
+struct Carried {
   Type type = Type::Real;
+  std::int64_t low = 0;    ///< of a vector: its first place
+  std::int64_t high = -1;  ///< and its last; below the first: one value
+
+  Carried() = default;
+  constexpr Carried(Type of_one) : type(of_one) {}  // NOLINT: one value carries its type
+  constexpr Carried(Type of_each, std::int64_t from, std::int64_t to) : type(of_each), low(from), high(to) {}
+
+  [[nodiscard]] bool is_vector() const { return high >= low; }
+  [[nodiscard]] bool has_place(std::int64_t place) const { return low <= place && place <= high; }
+  /// The same bounds, of another type.
+  [[nodiscard]] Carried of(Type other) const { return {other, low, high}; }
+};
+
+struct KnownType {
+  Carried carried{};
   std::string_view note{};  ///< what to mind; empty where it is the same type
 };
 
-/// An elementary type, by its name in IEC 61131-3; nothing where no type of a diagram can stand for it.
+/// An elementary type by its name in IEC 61131-3, or an array of one dimension of such; nothing where no type of a
+/// diagram can stand for it.
 [[nodiscard]] std::optional<KnownType> known_type(std::string_view name);
+
+/// As a diagram declares it: LREAL, or ARRAY[0..2] OF LREAL.
+[[nodiscard]] std::string declared_text(const Carried& carried);
+
+/// A literal of a type as a diagram has it: 2 for an LREAL is 2.0.
+[[nodiscard]] std::string real_text(Type type, std::string literal);
+
+/// `[1.5, 2.5]` by its elements; empty where the text is no such list.
+[[nodiscard]] std::vector<std::string> elements_of_list(std::string_view text);
 
 /// The block of the library that a function block of the standard is: TON is HY_TON. Null where there is none.
 [[nodiscard]] const BlockType* known_block(std::string_view name);

@@ -279,7 +279,7 @@ class RandomDiagram {
 
   void write_vectors(std::string& declarations, std::string& statements) {
     for (std::size_t i = 0; i < 1 + pick(3); ++i) {
-      const std::size_t length = 2 + pick(longest_vector - 1);
+      const std::size_t length = length_from(2);
       declarations += fmt::format("    V{} : ARRAY[0..{}] OF LREAL;\n", i, length - 1);
       statements += fmt::format("  V{} := {};\n", i, vector(length));
       offer(fmt::format("V{}", i), length);
@@ -289,11 +289,16 @@ class RandomDiagram {
     }
   }
 
+  /// A loop over rows begins at three elements, one over the terms of a sum at nine: sizes below and above both.
+  std::size_t length_from(std::size_t least) {
+    constexpr std::size_t short_one = 6;
+    return pick(5) == 0 ? short_one + 1 + pick(longest_vector - short_one) : least + pick(short_one + 1 - least);
+  }
+
   void write_sized(const std::string& name, std::string& declarations, std::string& statements) {
-    // A loop begins at three elements: sizes below and above it.
-    const std::size_t n = 1 + pick(longest_vector);
-    const std::size_t m = 1 + pick(longest_vector);
-    const std::size_t p = 1 + pick(longest_vector);
+    const std::size_t n = length_from(1);
+    const std::size_t m = length_from(1);
+    const std::size_t p = length_from(1);
     const auto input = [&](std::size_t length) { return length == 1 ? source(Type::Real) : vector(length); };
     const std::string reset = pick(2) == 0 ? fmt::format(", R1 := {}", source(Type::Bool)) : "";
     switch (pick(5)) {
@@ -395,7 +400,7 @@ class RandomDiagram {
   RandomWords words_;
   std::string text_;
   std::array<std::vector<std::string>, 4> sources_;
-  static constexpr std::size_t longest_vector = 6;
+  static constexpr std::size_t longest_vector = 13;
   std::array<std::vector<std::string>, longest_vector + 1> vectors_;  ///< by length
 };
 

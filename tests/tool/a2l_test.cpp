@@ -348,7 +348,7 @@ END_FUNCTION_BLOCK
   EXPECT_THAT(header, AllOf(HasSubstr("  double x[3];  // [um] three sensors\n"), HasSubstr("  double y[3];\n")));
   EXPECT_THAT(
       bench.read("arrays/vectors.c"),
-      HasSubstr("  for (uint32_t i = 0U; i < 3U; ++i) {\n    out->y[i] = in->on_1 ? (-in->x[i]) : in->x[i];\n  }\n"));
+      HasSubstr("  for (size_t i = 0U; i < 3U; ++i) {\n    out->y[i] = in->on_1 ? (-in->x[i]) : in->x[i];\n  }\n"));
   const std::string a2l = bench.read("arrays/vectors.a2l");
   const auto entry = a2l.find("/begin MEASUREMENT VECTORS.X ");
   ASSERT_NE(entry, std::string::npos);

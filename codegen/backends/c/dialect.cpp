@@ -76,7 +76,7 @@ constexpr DialectOfC dialect_with(const SpellingTable& operations, std::string_v
           .read_begin = "element(",
           .element_begin = "set_element(",
           .passes_length = true,
-          .place = "uint32_t",
+          .place = "size_t",
           .careful = true};
 }
 

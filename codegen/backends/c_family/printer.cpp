@@ -167,20 +167,26 @@ LoopWords WriterOfC::loop_words() {
                      .column = locals_.make({"k"}),
                      .number_end = dialect_.careful ? "U" : "",
                      .brackets = dialect_.careful},
-          .sum = locals_.make({"sum"}),
-          .assign = " = "};
+          .sums = {locals_.make({"sum"}), locals_.make({"sum"}), locals_.make({"sum"}), locals_.make({"sum"})},
+          .assign = " = ",
+          .several_at_once = true};
 }
 
-void WriterOfC::begin_loop(std::string_view place, std::size_t first, std::size_t end, std::string& text) {
-  append(text, fmt::format("for ({0} {1} = {2}U; {1} < {3}U; ++{1}) {{\n", dialect_.place, place, first, end));
+void WriterOfC::begin_loop(std::string_view place, std::size_t first, std::size_t end, std::size_t step,
+                           std::string& text) {
+  const std::string next = step == 1 ? fmt::format("++{}", place) : fmt::format("{} += {}U", place, step);
+  append(text, fmt::format("for ({0} {1} = {2}U; {1} < {3}U; {4}) {{\n", dialect_.place, place, first, end, next));
 }
 
 void WriterOfC::declare_array(std::string_view name, Type type, std::size_t length, std::string& text) {
   append(text, indentation, type_of(dialect_, type), fmt::format(" {}[{}];\n", name, length));
 }
 
-void WriterOfC::begin_variable(std::string_view name, bool is_known, std::string& text) {
-  append(text, is_known ? "" : dialect_.real, is_known ? "" : " ", name);
+void WriterOfC::begin_variable(std::string_view name, SumVariable variable, std::string& text) {
+  if (!variable.is_known) {
+    append(text, variable.changes ? "" : "const ", dialect_.real, " ");
+  }
+  text += name;
 }
 
 void WriterOfC::set_local(std::string_view element, ValueId value, std::string& text) {

@@ -86,10 +86,11 @@ class WriterOfC : public StepWriter {
 
   [[nodiscard]] bool has_loops() const override { return !dialect_.place.empty(); }
   [[nodiscard]] LoopWords loop_words() override;
-  void begin_loop(std::string_view place, std::size_t first, std::size_t end, std::string& text) override;
+  void begin_loop(std::string_view place, std::size_t first, std::size_t end, std::size_t step,
+                  std::string& text) override;
   void end_loop(std::string& text) override { text += "}\n"; }
   void declare_array(std::string_view name, Type type, std::size_t length, std::string& text) override;
-  void begin_variable(std::string_view name, bool is_known, std::string& text) override;
+  void begin_variable(std::string_view name, SumVariable variable, std::string& text) override;
   void set_local(std::string_view element, ValueId value, std::string& text) override;
 
   const PrinterOfC& printer() const { return printer_; }

@@ -57,6 +57,6 @@ const DialectOfC cpp_dialect{.operations = cpp_operations,
                              .read_begin = "detail::at(",
                              .element_begin = "detail::store(",
                              .passes_length = false,
-                             .place = "std::uint32_t"};
+                             .place = "std::size_t"};
 
 }  // namespace hysteron

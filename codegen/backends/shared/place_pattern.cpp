@@ -97,12 +97,24 @@ std::string PlacePattern::place_text(const PlaceNumber& place, const PlaceWords&
   return text;
 }
 
-std::string PlacePattern::text(const PlaceWords& words) const {
+std::string PlacePattern::text(const PlaceWords& words, std::string_view sum) const {
   std::string text = between_.front();
   for (std::size_t i = 0; i < places_.size(); ++i) {
     append(text, place_text(places_[i], words), between_[i + 1]);
   }
+  for (std::size_t at = text.find(PlacePattern::sum); at != std::string::npos; at = text.find(PlacePattern::sum, at)) {
+    text.replace(at, PlacePattern::sum.size(), sum);
+    at += sum.size();
+  }
   return text;
+}
+
+PlacePattern PlacePattern::after_rows(std::size_t rows) const {
+  PlacePattern later = *this;
+  for (PlaceNumber& place : later.places_) {
+    place.first += place.by_row.value_or(0) * static_cast<std::int64_t>(rows);
+  }
+  return later;
 }
 
 }  // namespace hysteron

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "codegen/backends/shared/generated_file.hpp"
 #include "codegen/backends/shared/step_writer.hpp"
@@ -21,8 +23,6 @@ void StepWriter::prepare_loops() {
   loops_are_prepared_ = true;
   held_back_.assign(routine.tape.size(), false);
   array_of_.assign(routine.step.size(), no_array);
-  array_length_.assign(routine.step.size(), 0);
-  array_is_begun_.assign(routine.step.size(), false);
   const bool has_places = has_arrays(graph.inputs) || has_arrays(graph.outputs) || routine.uses_operation(Op::At) ||
                           std::ranges::any_of(cell_groups(routine.cells), &PortGroup::is_array);
   if (!has_loops() || !has_places) {
@@ -32,44 +32,116 @@ void StepWriter::prepare_loops() {
     return !is_leaf(routine.tape[id].op) && (needs_name(id) || own_definition_[id] != no_value);
   });
   find_arrays();
-  const bool any = shapes_.has_sums() || has_arrays(graph.outputs) ||
-                   std::ranges::any_of(array_length_, [](std::uint32_t length) { return length > 0; }) ||
+  const bool any = shapes_.has_sums() || has_arrays(graph.outputs) || !arrays_.empty() ||
                    std::ranges::any_of(cell_groups(routine.cells), &PortGroup::is_array);
   if (any) {
     loops_ = loop_words();
   }
 }
 
-/// The values of a vector that a block gives, or that are to be the next of its state.
-void StepWriter::find_arrays() {
-  const auto definition = [&](std::size_t at) {
-    const bool is = at < routine.step.size() && routine.step[at].kind == Statement::Kind::Define &&
-                    routine.step[at].always && own_definition_[routine.step[at].value] == at &&
-                    !is_output(routine.step[at].value);
-    return is ? element_of(routine.step[at].field) : std::nullopt;
-  };
-  for (std::size_t i = 0; i < routine.step.size(); ++i) {
-    const auto begin = definition(i);
-    if (!begin || begin->index != 0) {
-      continue;
+namespace {
+
+/// The elements of vectors that a diagram works out, by the operation that gives each: of those that the text has in
+/// one place, the one that no other of them takes.
+std::unordered_map<std::uint32_t, ElementName> elements_by_operation(const Graph& graph) {
+  std::unordered_map<std::uint32_t, ElementName> elements;
+  for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
+    const auto element = graph.nodes[i].block == nullptr ? element_of(graph.nodes[i].owner()) : std::nullopt;
+    if (element) {
+      elements.emplace(i, *element);
     }
-    const Statement& first = routine.step[i];
-    std::vector<ValueId> values{first.value};
-    for (auto next = definition(i + values.size()); next; next = definition(i + values.size())) {
-      const Statement& one = routine.step[i + values.size()];
-      if (next->vector != begin->vector || next->index != static_cast<std::int64_t>(values.size()) ||
-          one.target != first.target || one.what != first.what ||
-          routine.tape[one.value].type != routine.tape[first.value].type) {
-        break;
-      }
-      values.push_back(one.value);
-    }
-    if (shapes_.has_loop(values) && are_independent(values, first.target)) {
-      array_length_[i] = static_cast<std::uint32_t>(values.size());
-      std::fill_n(array_of_.begin() + static_cast<std::ptrdiff_t>(i), values.size(), static_cast<std::uint32_t>(i));
-    }
-    i += values.size() - 1;
   }
+  for (const Node& node : graph.nodes) {
+    for (std::uint32_t pin = 0; node.block == nullptr && pin < node.wire_count; ++pin) {
+      const Wire& wire = graph.wire(node, pin);
+      if (wire.from == Wire::From::Node && graph.nodes[wire.index].block == nullptr &&
+          graph.nodes[wire.index].owner() == node.owner()) {
+        elements.erase(wire.index);
+      }
+    }
+  }
+  return elements;
+}
+
+}  // namespace
+
+void StepWriter::find_arrays() {
+  for (std::size_t i = 0; i < routine.step.size();) {
+    const std::vector<std::uint32_t> statements = elements_of_block(i);
+    keep_array(statements, {});
+    i += std::max<std::size_t>(statements.size(), 1);
+  }
+  const auto variables = elements_by_operation(graph);
+  for (std::size_t i = 0; i < routine.step.size() && !variables.empty(); ++i) {
+    if (const std::vector<std::uint32_t> statements = elements_of_variable(i, variables); !statements.empty()) {
+      keep_array(statements, variables.at(routine.step[i].target).vector);
+    }
+  }
+}
+
+/// The statements that define a vector which a block gives, or which is to be the next of its state, from one on.
+std::vector<std::uint32_t> StepWriter::elements_of_block(std::size_t begin) const {
+  std::vector<std::uint32_t> statements;
+  for (std::size_t at = begin; at < routine.step.size(); ++at) {
+    const Statement& first = routine.step[begin];
+    const Statement& one = routine.step[at];
+    const bool is = one.kind == Statement::Kind::Define && one.always && own_definition_[one.value] == at &&
+                    !is_output(one.value) && one.target == first.target && one.what == first.what;
+    const auto element = is ? element_of(one.field) : std::nullopt;
+    if (!element || element->vector != element_of(first.field)->vector ||
+        element->index != static_cast<std::int64_t>(statements.size())) {
+      break;
+    }
+    statements.push_back(static_cast<std::uint32_t>(at));
+  }
+  return statements;
+}
+
+/// The same of a vector that a diagram works out, V := A + B. Other operations may stand between its elements; what is
+/// set there may not, since elements behind it may read it.
+std::vector<std::uint32_t> StepWriter::elements_of_variable(
+    std::size_t begin, const std::unordered_map<std::uint32_t, ElementName>& variables) const {
+  const auto element = [&](const Statement& one) {
+    const auto found = variables.find(one.target);
+    const bool is = one.kind == Statement::Kind::Define && !one.always && found != variables.end() &&
+                    needs_name(one.value) && own_definition_[one.value] == no_value && !is_output(one.value);
+    return is ? std::optional(found->second) : std::nullopt;
+  };
+  const auto first = element(routine.step[begin]);
+  std::vector<std::uint32_t> statements;
+  for (std::size_t at = begin; first && at < routine.step.size(); ++at) {
+    const Statement& one = routine.step[at];
+    const bool passes = (one.kind == Statement::Kind::Section || one.kind == Statement::Kind::Define) &&
+                        graph.nodes[one.target].block == nullptr;
+    if (!passes) {
+      break;
+    }
+    const auto next = element(one);
+    if (next && next->vector == first->vector && next->index == static_cast<std::int64_t>(statements.size())) {
+      statements.push_back(static_cast<std::uint32_t>(at));
+    }
+  }
+  return statements;
+}
+
+/// `variable`: what a diagram calls it; empty for a block's.
+void StepWriter::keep_array(const std::vector<std::uint32_t>& statements, std::string_view variable) {
+  LocalArray array{.variable = variable};
+  for (const std::uint32_t at : statements) {
+    array.values.push_back(routine.step[at].value);
+  }
+  const auto type = [&](ValueId id) { return routine.tape[id].type; };
+  if (statements.size() < shortest_loop || !shapes_.has_loop(array.values) ||
+      std::ranges::any_of(array.values, [&](ValueId id) { return type(id) != type(array.values.front()); }) ||
+      !are_independent(array.values, routine.step[statements.front()].target)) {
+    return;
+  }
+  array.first = statements.front();
+  for (const std::uint32_t at : statements) {
+    array_of_[at] = static_cast<std::uint32_t>(arrays_.size());
+    own_definition_[routine.step[at].value] = at;
+  }
+  arrays_.push_back(std::move(array));
 }
 
 /// Whether none of some values of a node needs another of them. What another node gives was written before.
@@ -99,10 +171,6 @@ bool StepWriter::are_independent(std::span<const ValueId> values, std::uint32_t 
 /// How many statements from the first on set the elements of one vector.
 std::size_t StepWriter::rows_from(std::span<const Statement> list) const {
   const Statement& first = list.front();
-  if (first.kind == Statement::Kind::Define) {
-    const std::uint32_t own = first.always ? own_definition_[first.value] : no_value;
-    return own == no_value ? 1 : std::max<std::size_t>(array_length_[own], 1);
-  }
   if (first.kind != Statement::Kind::SetCell && first.kind != Statement::Kind::SetOutput) {
     return 1;
   }
@@ -126,9 +194,6 @@ std::size_t StepWriter::rows_from(std::span<const Statement> list) const {
 }
 
 void StepWriter::write_group(std::span<const Statement> list, std::string& text) {
-  if (list.front().kind == Statement::Kind::Define) {
-    return write_array(own_definition_[list.front().value], text);
-  }
   std::vector<Row> rows;
   for (const Statement& one : list) {
     rows.push_back({.value = one.value, .statement = &one});
@@ -138,18 +203,16 @@ void StepWriter::write_group(std::span<const Statement> list, std::string& text)
 
 // --- local arrays ---
 
-void StepWriter::write_array(std::size_t first_statement, std::string& text) {
-  if (array_is_begun_[first_statement]) {
+void StepWriter::write_array(LocalArray& array, std::string& text) {
+  if (std::exchange(array.is_begun, true)) {
     return;
   }
-  array_is_begun_[first_statement] = true;
-  std::vector<ValueId> values;
-  for (std::size_t i = 0; i < array_length_[first_statement]; ++i) {
-    values.push_back(routine.step[first_statement + i].value);
-  }
-  const Statement& first = routine.step[first_statement];
-  write_elements(values, locals_.make({graph.nodes[first.target].owner(), element_of(first.field)->vector, first.what}),
-                 text);
+  const Statement& first = routine.step[array.first];
+  const std::string_view owner = graph.nodes[first.target].owner();
+  const std::string_view name = first.field.empty()
+                                    ? locals_.make({array.variable})
+                                    : locals_.make({owner, element_of(first.field)->vector, first.what});
+  write_elements(array.values, name, text);
 }
 
 void StepWriter::write_elements(std::span<const ValueId> values, std::string_view name, std::string& text) {
@@ -178,12 +241,12 @@ std::vector<std::string_view> StepWriter::declare_elements(std::string_view name
 // --- operands of sums ---
 
 template <class Use>
-void StepWriter::for_operands(ValueId sum, Use use) const {
+void StepWriter::for_operands(ValueId sum, std::size_t shortest, Use use) const {
   const std::vector<ValueId> terms = shapes_.terms(routine, sum);
   for (std::size_t i = 0; i < terms.size();) {
     const auto run = std::span(terms).subspan(i, shapes_.terms_alike_from(std::span(terms).subspan(i)));
     i += run.size();
-    if (run.size() < shortest_loop) {
+    if (run.size() < shortest) {
       continue;
     }
     use(run);
@@ -196,7 +259,7 @@ void StepWriter::for_operands(ValueId sum, Use use) const {
 }
 
 void StepWriter::write_operands_of(ValueId sum, std::string& text) {
-  for_operands(sum, [&](std::span<const ValueId> operands) { write_operands(operands, text); });
+  for_operands(sum, shortest_loop, [&](std::span<const ValueId> operands) { write_operands(operands, text); });
 }
 
 /// Values that have no name yet, and need one, become an array.
@@ -222,7 +285,8 @@ void StepWriter::gather_operands(std::span<const ValueId> values,
     }
     expressions.print(values[i], names[i]);
   }
-  if (std::unordered_set<ValueId>(values.begin(), values.end()).size() != values.size() || runs_of(names).size() == 1) {
+  if (std::unordered_set<ValueId>(values.begin(), values.end()).size() != values.size() ||
+      runs_of(names, shortest_loop).size() == 1) {
     return;
   }
   const Type type = routine.tape[values.front()].type;
@@ -271,7 +335,8 @@ void StepWriter::write_rows(std::vector<Row>& rows, std::string& text) {
   if (rows.size() >= shortest_loop) {
     for (const Row& row : rows) {
       if (row.sum != no_value) {
-        for_operands(row.sum, [&](std::span<const ValueId> operands) { gather_operands(operands, called, text); });
+        for_operands(row.sum, shortest_sum(),
+                     [&](std::span<const ValueId> operands) { gather_operands(operands, called, text); });
       }
     }
   }
@@ -281,8 +346,8 @@ void StepWriter::write_rows(std::vector<Row>& rows, std::string& text) {
   }
   for (std::size_t i = 0; i < rows.size();) {
     const RowLoop loop = loop_from(std::span(texts).subspan(i));
-    if (loop.count >= shortest_loop) {
-      write_loop(loop, text);
+    if (loop.count >= shortest_loop && !is_written_out(std::span(rows).subspan(i, loop.count))) {
+      write_loop(loop, std::span(rows).subspan(i, loop.count), text);
       i += loop.count;
     } else {
       write_row(rows[i++], text);
@@ -298,10 +363,23 @@ void StepWriter::write_rows(std::vector<Row>& rows, std::string& text) {
   }
 }
 
+/// Whether rows are copies of a few variables. As a loop a compiler makes one wide copy of them, which waits for each
+/// narrow write before it.
+bool StepWriter::is_written_out(std::span<const Row> rows) const {
+  return loops_->several_at_once && rows.size() < shortest_sum() && std::ranges::all_of(rows, [&](const Row& row) {
+           const Op op = routine.tape[row.value].op;
+           return (is_leaf(op) && !is_literal(op)) || expressions.is_named(row.value);
+         });
+}
+
+std::string_view StepWriter::name_of_sum(const Row& row) {
+  return locals_.make({graph.nodes[section_].owner(), word_for(routine.tape[row.sum])});
+}
+
 /// A row that shares no loop.
 void StepWriter::write_row(const Row& row, std::string& text) {
-  if (row.sum != no_value && !expressions.is_named(row.sum)) {
-    write_definition(row.sum, locals_.make({graph.nodes[section_].owner(), word_for(routine.tape[row.sum])}), text);
+  if (row.sum != no_value && !expressions.is_named(row.sum) && has_loop(runs_of(terms_of(row.sum), shortest_sum()))) {
+    write_definition(row.sum, name_of_sum(row), text);
   }
   write_line(row, text);
 }
@@ -321,11 +399,11 @@ StepWriter::RowText StepWriter::text_of(const Row& row) {
   RowText made;
   if (row.sum != no_value) {
     made.terms = terms_of(row.sum);
-    expressions.name(row.sum, loops_->sum);
+    expressions.name(row.sum, PlacePattern::sum);
   }
   const std::string_view outside = indentation;
   const bool begins = section_begins_;
-  indentation = texts_.emplace_back(std::string(outside) + "  ");
+  indentation = {};
   section_begins_ = false;  // its heading stands before the loop
   write_line(row, made.line);
   section_begins_ = begins;
@@ -334,123 +412,6 @@ StepWriter::RowText StepWriter::text_of(const Row& row) {
     expressions.unname(row.sum);
   }
   return made;
-}
-
-// --- loops ---
-
-std::vector<std::string> StepWriter::terms_of(ValueId sum) const {
-  std::vector<std::string> texts;
-  for (const ValueId term : shapes_.terms(routine, sum)) {
-    expressions.print_added(term, texts.emplace_back());
-  }
-  return texts;
-}
-
-std::vector<StepWriter::TermRun> StepWriter::runs_of(const std::vector<std::string>& terms) {
-  std::vector<TermRun> runs;
-  for (std::size_t i = 0; i < terms.size();) {
-    TermRun run{.pattern = PlacePattern(terms[i]), .first = i};
-    while (i + run.count < terms.size() && run.pattern.takes(terms[i + run.count], 0, run.count)) {
-      ++run.count;
-    }
-    run.count = run.count < shortest_loop ? 1 : run.count;
-    i += run.count;
-    runs.push_back(std::move(run));
-  }
-  return runs;
-}
-
-StepWriter::RowLoop StepWriter::loop_from(std::span<const RowText> rows) {
-  RowLoop loop{.line = PlacePattern(rows.front().line), .terms = runs_of(rows.front().terms), .count = 1};
-  const auto fits = [&](const RowText& row, std::size_t at) {
-    return row.terms.size() == rows.front().terms.size() && loop.line.takes(row.line, at, 0) &&
-           std::ranges::all_of(loop.terms, [&](TermRun& run) {
-             for (std::size_t i = 0; i < run.count; ++i) {
-               if (!run.pattern.takes(row.terms[run.first + i], at, i)) {
-                 return false;
-               }
-             }
-             return true;
-           });
-  };
-  while (loop.count < rows.size() && fits(rows[loop.count], loop.count)) {
-    ++loop.count;
-  }
-  return loop;
-}
-
-void StepWriter::write_loop(const RowLoop& loop, std::string& text) {
-  PlaceWords words = loops_->places;
-  words.column = {};
-  begin_line(text);
-  begin_loop(words.row, 0, loop.count, text);
-  const std::string_view outside = indentation;
-  indentation = texts_.emplace_back(std::string(outside) + "  ");
-  if (!loop.terms.empty()) {
-    write_sum(loops_->sum, false, loop.terms, words.row, text);
-  }
-  text += loop.line.text(words);
-  indentation = outside;
-  text += indentation;
-  end_loop(text);
-}
-
-namespace {
-
-/// A text without the brackets that stand round the whole of it.
-std::string_view without_brackets(std::string_view text) {
-  if (!text.starts_with('(')) {
-    return text;
-  }
-  int depth = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    depth += text[i] == '(' ? 1 : text[i] == ')' ? -1 : 0;
-    if (depth == 0 && i + 1 < text.size()) {
-      return text;
-    }
-  }
-  return text.substr(1, text.size() - 2);
-}
-
-}  // namespace
-
-/// A variable becomes a sum from the left.
-void StepWriter::write_sum(std::string_view name, bool is_known, const std::vector<TermRun>& runs, std::string_view row,
-                           std::string& text) {
-  PlaceWords first = loops_->places;
-  first.row = row;
-  first.column = {};
-  PlaceWords each = first;
-  each.column = loops_->places.column;
-  std::string variable;
-  print_variable(name, variable);
-
-  begin_line(text);
-  begin_variable(name, is_known, text);
-  const std::string begin = runs.front().pattern.text(first);
-  const bool stands_alone = runs.size() == 1 || runs[0].count > 1 || runs[1].count > 1;
-  append(text, loops_->assign, stands_alone ? without_brackets(begin) : begin);
-  bool line_is_open = true;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i].count == 1) {
-      if (i > 0) {
-        if (!line_is_open) {
-          append(text, indentation, variable, loops_->assign, variable);
-          line_is_open = true;
-        }
-        append(text, " + ", runs[i].pattern.text(first));
-      }
-      continue;
-    }
-    text += line_is_open ? ";\n" : "";
-    line_is_open = false;
-    text += indentation;
-    begin_loop(each.column, i == 0 ? 1 : 0, runs[i].count, text);
-    append(text, indentation, "  ", variable, loops_->assign, variable, " + ", runs[i].pattern.text(each), ";\n",
-           indentation);
-    end_loop(text);
-  }
-  text += line_is_open ? ";\n" : "";
 }
 
 }  // namespace hysteron

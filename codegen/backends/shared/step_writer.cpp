@@ -52,6 +52,10 @@ void StepWriter::write(const Statement& statement, std::string& text) {
       text += indentation;
       return end_rate(text);
     case Statement::Kind::Define:
+      if (const std::uint32_t own = own_definition_[statement.value];
+          loops_ && own != no_value && array_of_[own] != no_array) {
+        return write_array(arrays_[array_of_[own]], text);
+      }
       if ((statement.always || needs_name(statement.value)) && !expressions.is_named(statement.value)) {
         write_shared(statement.value, false, text);
         write_definition(statement.value, name_of(statement), text);
@@ -102,10 +106,10 @@ void StepWriter::begin_line(std::string& text) {
 }
 
 void StepWriter::write_definition(ValueId id, std::string_view name, std::string& text) {
-  const std::vector<TermRun> runs = shapes_.is_sum(id) && loops_ ? runs_of(terms_of(id)) : std::vector<TermRun>();
-  if (std::ranges::any_of(runs, [](const TermRun& run) { return run.count > 1; })) {
-    begin_section(text);
-    write_sum(name, is_output(id), runs, {}, text);
+  const std::vector<TermRun> runs =
+      shapes_.is_sum(id) && loops_ ? runs_of(terms_of(id), shortest_sum()) : std::vector<TermRun>();
+  if (has_loop(runs)) {
+    write_sums(std::vector{Sum{.name = name, .is_known = is_output(id), .runs = runs}}, {}, text);
   } else {
     begin_line(text);
     define(id, name, text);
@@ -141,8 +145,8 @@ void StepWriter::write_shared(ValueId root, bool with_root, std::string& text) {
     if (entered) {
       const std::uint32_t own = own_definition_[id];
       const bool wanted = (with_root || id != root) && !held_back_[id];
-      if (wanted && own != no_value && array_of_[own] != no_array && !array_is_begun_[array_of_[own]]) {
-        write_array(array_of_[own], text);
+      if (wanted && own != no_value && array_of_[own] != no_array && !arrays_[array_of_[own]].is_begun) {
+        write_array(arrays_[array_of_[own]], text);
       } else if (wanted && (needs_name(id) || own != no_value)) {
         write_definition(id,
                          own != no_value ? name_of(routine.step[own])

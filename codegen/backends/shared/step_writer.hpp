@@ -3,15 +3,17 @@
 //
 // A value that is used once is written where it is used. A value that is used more often, and one that a target cannot
 // write inside an expression, gets a name before its first use. The elements of a vector are one array, and what their
-// lines have in common is a loop (step_loops.cpp).
+// lines have in common is a loop (step_loops.cpp, row_loops.cpp).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -21,14 +23,17 @@
 #include "codegen/backends/shared/port_groups.hpp"
 #include "codegen/backends/shared/routine.hpp"
 #include "codegen/backends/shared/value_shapes.hpp"
+#include "support/element_name.hpp"
 
 namespace hysteron {
 
 /// How a target writes loops.
 struct LoopWords {
-  PlaceWords places{};        ///< the variables that count rows, and terms of a sum
-  std::string_view sum{};     ///< the variable of a sum within a loop
-  std::string_view assign{};  ///< between a variable and its value
+  PlaceWords places{};  ///< the variables that count rows, and terms of a sum
+  /// Variables of the sums within a loop: one, or one for each of the rows that are computed at once.
+  std::vector<std::string_view> sums{};
+  std::string_view assign{};     ///< between a variable and its value
+  bool several_at_once = false;  ///< for processors that add while they wait for another sum
 };
 
 class StepWriter {
@@ -61,14 +66,18 @@ class StepWriter {
   [[nodiscard]] virtual bool has_loops() const { return false; }
   /// Asked for once, where there is something to loop over.
   [[nodiscard]] virtual LoopWords loop_words() { return {}; }
-  /// From place `first` to place `end` - 1.
-  virtual void begin_loop(std::string_view /*place*/, std::size_t /*first*/, std::size_t /*end*/,
+  /// From place `first` to before place `end`.
+  virtual void begin_loop(std::string_view /*place*/, std::size_t /*first*/, std::size_t /*end*/, std::size_t /*step*/,
                           std::string& /*text*/) {}
   virtual void end_loop(std::string& /*text*/) {}
   /// The line that declares a local array, with its indentation; nothing where declarations stand elsewhere.
   virtual void declare_array(std::string_view /*name*/, Type /*type*/, std::size_t /*length*/, std::string& /*text*/) {}
-  /// A variable of type LREAL whose value changes, as its first assignment writes it; `is_known`: it is declared.
-  virtual void begin_variable(std::string_view /*name*/, bool /*is_known*/, std::string& /*text*/) {}
+  struct SumVariable {
+    bool is_known = false;  ///< declared before
+    bool changes = false;   ///< assigned again after the first time
+  };
+  /// The variable of a sum, of type LREAL, as its first assignment writes it.
+  virtual void begin_variable(std::string_view /*name*/, SumVariable /*variable*/, std::string& /*text*/) {}
   virtual void print_variable(std::string_view name, std::string& text) const { text += name; }
   /// An element of a local array gets its value.
   virtual void set_local(std::string_view /*element*/, ValueId /*value*/, std::string& /*text*/) {}
@@ -129,30 +138,62 @@ class StepWriter {
     std::vector<TermRun> terms{};
     std::uint32_t count = 0;
   };
+  /// A variable that becomes a sum.
+  struct Sum {
+    std::string_view name{};
+    bool is_known = false;
+    std::vector<TermRun> runs{};
+  };
+  /// How many rows are computed at once: the more, the less a sum waits for its own last addition. Measured in
+  /// decision 48.
+  static constexpr std::size_t looped_rows_at_once = 4;   ///< where terms are a loop
+  static constexpr std::size_t written_rows_at_once = 2;  ///< where terms are written out
   void prepare_loops();
+  /// Definitions of the step whose values are the elements of one local array.
+  struct LocalArray {
+    std::vector<ValueId> values{};
+    std::uint32_t first = 0;      ///< statement of the step that defines the first element
+    std::string_view variable{};  ///< of a diagram
+    bool is_begun = false;
+  };
   void find_arrays();
+  [[nodiscard]] std::vector<std::uint32_t> elements_of_block(std::size_t begin) const;
+  [[nodiscard]] std::vector<std::uint32_t> elements_of_variable(
+      std::size_t begin, const std::unordered_map<std::uint32_t, ElementName>& variables) const;
+  void keep_array(const std::vector<std::uint32_t>& statements, std::string_view variable);
   [[nodiscard]] bool are_independent(std::span<const ValueId> values, std::uint32_t node) const;
   [[nodiscard]] std::size_t rows_from(std::span<const Statement> list) const;
   void write_group(std::span<const Statement> list, std::string& text);
-  void write_array(std::size_t first_statement, std::string& text);
+  void write_array(LocalArray& array, std::string& text);
   void write_elements(std::span<const ValueId> values, std::string_view name, std::string& text);
   void write_rows(std::vector<Row>& rows, std::string& text);
   [[nodiscard]] ValueId sum_within(ValueId root, bool whole) const;
   /// By operand of the terms of a sum that are alike: calls `use(operands)`.
   template <class Use>
-  void for_operands(ValueId sum, Use use) const;
+  void for_operands(ValueId sum, std::size_t shortest, Use use) const;
   void write_operands_of(ValueId sum, std::string& text);
   void write_operands(std::span<const ValueId> values, std::string& text);
   void gather_operands(std::span<const ValueId> values, std::vector<std::pair<ValueId, std::uint32_t>>& called,
                        std::string& text);
+  [[nodiscard]] bool is_written_out(std::span<const Row> rows) const;
+  std::string_view name_of_sum(const Row& row);
   void write_row(const Row& row, std::string& text);
   void write_line(const Row& row, std::string& text);
   [[nodiscard]] RowText text_of(const Row& row);
-  [[nodiscard]] static std::vector<TermRun> runs_of(const std::vector<std::string>& terms);
-  [[nodiscard]] static RowLoop loop_from(std::span<const RowText> rows);
-  void write_loop(const RowLoop& loop, std::string& text);
-  void write_sum(std::string_view name, bool is_known, const std::vector<TermRun>& runs, std::string_view row,
-                 std::string& text);
+  /// Terms of at least this many that are alike become a loop.
+  [[nodiscard]] std::size_t shortest_sum() const {
+    return loops_->several_at_once ? shortest_sum_at_once : shortest_loop;
+  }
+  [[nodiscard]] static std::vector<TermRun> runs_of(const std::vector<std::string>& terms, std::size_t shortest);
+  [[nodiscard]] static bool has_loop(const std::vector<TermRun>& runs) {
+    return std::ranges::any_of(runs, [](const TermRun& run) { return run.count > 1; });
+  }
+  [[nodiscard]] RowLoop loop_from(std::span<const RowText> rows) const;
+  [[nodiscard]] std::size_t rows_at_once(const RowLoop& loop) const;
+  void write_loop(const RowLoop& loop, std::span<const Row> rows, std::string& text);
+  void write_block(const RowLoop& loop, std::size_t first, std::span<const std::string_view> sums, std::string_view row,
+                   std::string& text);
+  void write_sums(std::span<const Sum> sums, std::string_view row, std::string& text);
   [[nodiscard]] std::vector<std::string> terms_of(ValueId sum) const;
   [[nodiscard]] std::vector<std::string_view> declare_elements(std::string_view name, Type type, std::size_t count,
                                                                std::string& text);
@@ -169,11 +210,10 @@ class StepWriter {
   std::optional<LoopWords> loops_;
   ValueShapes shapes_;
   static constexpr std::uint32_t no_array = no_value;
-  std::vector<std::uint32_t> array_of_;      ///< by statement of the step: the definition at which its array begins
-  std::vector<std::uint32_t> array_length_;  ///< by statement of the step: 0 but where an array begins
-  std::vector<bool> array_is_begun_;         ///< by statement of the step
-  std::vector<bool> held_back_;              ///< by value: the sum of a row, which is written with its row
-  std::deque<std::string> texts_;            ///< names of elements, and indentations
+  std::vector<LocalArray> arrays_;
+  std::vector<std::uint32_t> array_of_;  ///< by statement of the step: its place in arrays_, or no_array
+  std::vector<bool> held_back_;          ///< by value: the sum of a row, which is written with its row
+  std::deque<std::string> texts_;        ///< names of elements, and indentations
 };
 
 }  // namespace hysteron

@@ -15,6 +15,8 @@ namespace hysteron {
 
 /// Rows of at least this many elements, and sums of at least this many terms, are loops (decision 46).
 inline constexpr std::size_t shortest_loop = 3;
+/// The same of the terms of a sum, where a target computes several rows at once (decision 48).
+inline constexpr std::size_t shortest_sum_at_once = 9;
 
 class ValueShapes {
  public:

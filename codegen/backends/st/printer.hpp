@@ -137,10 +137,11 @@ class StWriter final : public StepWriter {
   [[nodiscard]] std::string_view word_for(const Value& value) const override { return word_for_result(value.op); }
   [[nodiscard]] bool has_loops() const override { return true; }
   [[nodiscard]] LoopWords loop_words() override;
-  void begin_loop(std::string_view place, std::size_t first, std::size_t end, std::string& text) override;
+  void begin_loop(std::string_view place, std::size_t first, std::size_t end, std::size_t step,
+                  std::string& text) override;
   void end_loop(std::string& text) override { text += "END_FOR;\n"; }
   void declare_array(std::string_view name, Type type, std::size_t length, std::string& text) override;
-  void begin_variable(std::string_view name, bool is_known, std::string& text) override;
+  void begin_variable(std::string_view name, SumVariable variable, std::string& text) override;
   void print_variable(std::string_view name, std::string& text) const override { printer_.print_variable(name, text); }
   void set_local(std::string_view element, ValueId value, std::string& text) override;
 

@@ -123,10 +123,11 @@ LoopWords StWriter::loop_words() {
   sum_ = identifiers_.make({"SUM"});
   term_.clear();
   printer_.print_variable(term_name, term_);
-  return {.places = {.row = place_, .column = term_}, .sum = sum_, .assign = " := "};
+  return {.places = {.row = place_, .column = term_}, .sums = {sum_}, .assign = " := "};
 }
 
-void StWriter::begin_loop(std::string_view place, std::size_t first, std::size_t end, std::string& text) {
+void StWriter::begin_loop(std::string_view place, std::size_t first, std::size_t end, std::size_t /*step*/,
+                          std::string& text) {
   (place == place_ ? uses_place : uses_term) = true;
   append(text, fmt::format("FOR {} := {} TO {} DO\n", place, first, end - 1));
 }
@@ -135,8 +136,8 @@ void StWriter::declare_array(std::string_view name, Type type, std::size_t lengt
   locals.push_back({name, type, static_cast<std::uint32_t>(length)});
 }
 
-void StWriter::begin_variable(std::string_view name, bool is_known, std::string& text) {
-  if (!is_known && std::ranges::find(locals, name, &StLocal::name) == locals.end()) {
+void StWriter::begin_variable(std::string_view name, SumVariable variable, std::string& text) {
+  if (!variable.is_known && std::ranges::find(locals, name, &StLocal::name) == locals.end()) {
     locals.push_back({name, Type::Real});
   }
   printer_.print_variable(name, text);

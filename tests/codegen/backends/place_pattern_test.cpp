@@ -29,6 +29,15 @@ TEST(PlacePattern, ARowOrAColumnThatIsNotCountedIsTheFirst) {
   EXPECT_EQ(pattern.text({}), "a[3] * x[1]");
 }
 
+/// Rows side by side: each is the same text, some rows further on, with a sum of its own.
+TEST(PlacePattern, ALaterRowIsTheSamePatternFurtherOn) {
+  PlacePattern pattern("a[3] + " + std::string(PlacePattern::sum) + " + x[0]");
+  ASSERT_TRUE(pattern.takes("a[7] + " + std::string(PlacePattern::sum) + " + x[0]", 1, 0));
+  EXPECT_EQ(pattern.text(careful, "total"), "a[(4U * i) + 3U] + total + x[0]");
+  EXPECT_EQ(pattern.after_rows(2).text(careful, "total_3"), "a[(4U * i) + 11U] + total_3 + x[0]");
+  EXPECT_EQ(pattern.after_rows(2).text({}, "s"), "a[11] + s + x[0]");
+}
+
 /// A place is counted in numbers without a sign: none between may be below 0.
 TEST(PlacePattern, WhatGoesDownIsTakenOffLast) {
   PlacePattern pattern("a[6] - b[0]");

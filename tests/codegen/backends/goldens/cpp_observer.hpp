@@ -73,13 +73,13 @@ struct Out {
 
 /// Puts the state to its beginning.
 inline void reset(const Params& params, State& state) noexcept {
-  for (std::uint32_t i = 0U; i < 4U; ++i) {
+  for (std::size_t i = 0U; i < 4U; ++i) {
     state.model.x[i] = params.model.x0[i];
   }
-  for (std::uint32_t i = 0U; i < 4U; ++i) {
+  for (std::size_t i = 0U; i < 4U; ++i) {
     state.notch.s[i] = 0.0;
   }
-  for (std::uint32_t i = 0U; i < 3U; ++i) {
+  for (std::size_t i = 0U; i < 3U; ++i) {
     state.plant.x[i] = 0.0;
   }
 }
@@ -91,81 +91,57 @@ inline Out step(const Params& params, State& state, const In& in) noexcept {
   // MODEL : HY_STATE_SPACE
   Real model_y[3];
   Real model_x[4];
-  for (std::uint32_t i = 0U; i < 4U; ++i) {
+  for (std::size_t i = 0U; i < 4U; ++i) {
     model_x[i] = in.again ? params.model.x0[i] : state.model.x[i];
   }
-  for (std::uint32_t i = 0U; i < 3U; ++i) {
-    Real sum = params.model.c[4 * i] * model_x[0];
-    for (std::uint32_t k = 1U; k < 4U; ++k) {
-      sum = sum + params.model.c[4 * i + k] * model_x[k];
-    }
-    model_y[i] = sum;
-  }
-  for (std::uint32_t i = 0U; i < 4U; ++i) {
-    Real sum = params.model.a[4 * i] * model_x[0];
-    for (std::uint32_t k = 1U; k < 4U; ++k) {
-      sum = sum + params.model.a[4 * i + k] * model_x[k];
-    }
-    sum = sum + params.model.b[i] * in.force;
+  model_y[0] = params.model.c[0] * model_x[0] + params.model.c[1] * model_x[1] + params.model.c[2] * model_x[2] + params.model.c[3] * model_x[3];
+  model_y[1] = params.model.c[4] * model_x[0] + params.model.c[5] * model_x[1] + params.model.c[6] * model_x[2] + params.model.c[7] * model_x[3];
+  model_y[2] = params.model.c[8] * model_x[0] + params.model.c[9] * model_x[1] + params.model.c[10] * model_x[2] + params.model.c[11] * model_x[3];
+  for (std::size_t i = 0U; i < 4U; i += 2U) {
+    const Real sum = params.model.a[4 * i] * model_x[0] + params.model.a[4 * i + 1] * model_x[1] + params.model.a[4 * i + 2] * model_x[2] + params.model.a[4 * i + 3] * model_x[3] + params.model.b[i] * in.force;
+    const Real sum_2 = params.model.a[4 * i + 4] * model_x[0] + params.model.a[4 * i + 5] * model_x[1] + params.model.a[4 * i + 6] * model_x[2] + params.model.a[4 * i + 7] * model_x[3] + params.model.b[i + 1] * in.force;
     state.model.x[i] = sum;
+    state.model.x[i + 1] = sum_2;
   }
   const Real mix_xin_2 = in.torque + 1.0;
 
   // MIX : HY_MATRIX_GAIN
   Real mix_xout[3];
-  Real mix_vector[3];
-  mix_vector[0] = in.force;
-  mix_vector[1] = in.load;
-  mix_vector[2] = mix_xin_2;
-  for (std::uint32_t i = 0U; i < 3U; ++i) {
-    Real sum = params.mix.k[3 * i] * mix_vector[0];
-    for (std::uint32_t k = 1U; k < 3U; ++k) {
-      sum = sum + params.mix.k[3 * i + k] * mix_vector[k];
-    }
-    mix_xout[i] = sum;
-  }
+  mix_xout[0] = params.mix.k[0] * in.force + params.mix.k[1] * in.load + params.mix.k[2] * mix_xin_2;
+  mix_xout[1] = params.mix.k[3] * in.force + params.mix.k[4] * in.load + params.mix.k[5] * mix_xin_2;
+  mix_xout[2] = params.mix.k[6] * in.force + params.mix.k[7] * in.load + params.mix.k[8] * mix_xin_2;
 
   // PLANT : HY_TRANSFER_FUNCTION_ZOH
   Real plant_t[3];
-  for (std::uint32_t i = 0U; i < 3U; ++i) {
+  for (std::size_t i = 0U; i < 3U; ++i) {
     plant_t[i] = in.again ? 0.0 : state.plant.x[i];
   }
-  Real plant_xout = params.plant.c[0] * plant_t[0];
-  for (std::uint32_t k = 1U; k < 3U; ++k) {
-    plant_xout = plant_xout + params.plant.c[k] * plant_t[k];
-  }
+  const Real plant_xout = params.plant.c[0] * plant_t[0] + params.plant.c[1] * plant_t[1] + params.plant.c[2] * plant_t[2];
   Real plant_x_next[3];
-  for (std::uint32_t i = 0U; i < 3U; ++i) {
-    Real sum = params.plant.phi[3 * i] * plant_t[0];
-    for (std::uint32_t k = 1U; k < 3U; ++k) {
-      sum = sum + params.plant.phi[3 * i + k] * plant_t[k];
-    }
-    sum = sum + params.plant.gamma[i] * in.load;
-    plant_x_next[i] = sum;
-  }
-  for (std::uint32_t i = 0U; i < 3U; ++i) {
-    state.plant.x[i] = plant_x_next[i];
-  }
-  Real held = in.u[0];
-  for (std::uint32_t k = 1U; k < 4U; ++k) {
-    held = held + in.u[k];
-  }
+  plant_x_next[0] = params.plant.phi[0] * plant_t[0] + params.plant.phi[1] * plant_t[1] + params.plant.phi[2] * plant_t[2] + params.plant.gamma[0] * in.load;
+  plant_x_next[1] = params.plant.phi[3] * plant_t[0] + params.plant.phi[4] * plant_t[1] + params.plant.phi[5] * plant_t[2] + params.plant.gamma[1] * in.load;
+  plant_x_next[2] = params.plant.phi[6] * plant_t[0] + params.plant.phi[7] * plant_t[1] + params.plant.phi[8] * plant_t[2] + params.plant.gamma[2] * in.load;
+  state.plant.x[0] = plant_x_next[0];
+  state.plant.x[1] = plant_x_next[1];
+  state.plant.x[2] = plant_x_next[2];
+  const Real held = in.u[0] + in.u[1] + in.u[2] + in.u[3];
 
   // NOTCH : HY_TRANSFER_FUNCTION
   const Real notch_xout = (state.notch.s[0] + params.notch.num[0] * in.torque) / params.notch.den[0];
-  for (std::uint32_t i = 0U; i < 3U; ++i) {
+  for (std::size_t i = 0U; i < 3U; ++i) {
     state.notch.s[i] = state.notch.s[i + 1] + params.notch.num[i + 1] * in.torque - params.notch.den[i + 1] * notch_xout;
   }
   state.notch.s[3] = 0.0 + params.notch.num[4] * in.torque - params.notch.den[4] * notch_xout;
-  for (std::uint32_t i = 0U; i < 3U; ++i) {
-    out.y[i] = model_y[i];
-  }
-  for (std::uint32_t i = 0U; i < 4U; ++i) {
-    out.x[i] = model_x[i];
-  }
-  for (std::uint32_t i = 0U; i < 3U; ++i) {
-    out.mixed[i] = mix_xout[i];
-  }
+  out.y[0] = model_y[0];
+  out.y[1] = model_y[1];
+  out.y[2] = model_y[2];
+  out.x[0] = model_x[0];
+  out.x[1] = model_x[1];
+  out.x[2] = model_x[2];
+  out.x[3] = model_x[3];
+  out.mixed[0] = mix_xout[0];
+  out.mixed[1] = mix_xout[1];
+  out.mixed[2] = mix_xout[2];
   out.held = plant_xout + 0.5 * held;
   out.calm = notch_xout;
   return out;

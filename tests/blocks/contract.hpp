@@ -6,36 +6,47 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
-#include "blocks/catalogue.hpp"
+#include "tests/blocks/any_block.hpp"
 
 namespace hysteron::testing {
 
 inline constexpr int steps = 400;
 inline constexpr std::array<double, 3> sample_times{50e-6, 1e-3, 1.0};
 
-template <class B>
-using DoubleParams = typename B::template Params<double>;
-template <class B>
-using DoubleIn = typename B::template In<double>;
+/// A block of the catalogue, in the scalars that the contract holds for.
+struct ContractBlock : AnyBlock {
+  MakeRun<AnyRun<double>> in_float = nullptr;
+  MakeRun<AnyRun<double>> in_explicit_double = nullptr;
+  bool is_function_block = false;
+  bool is_trivially_copyable = false;  ///< its parameters and its state
+};
 
-/// Runs visit.operator()<B>() for every block, with the block's name in every failure.
+/// The catalogue, in its order.
+const std::vector<ContractBlock>& contract_blocks();
+
+/// The block of this name, HY_LAG; a name that is none throws std::out_of_range.
+const ContractBlock& contract_block(std::string_view name);
+
+/// Calls visit(block) for every block, with the block's name in every failure.
 template <class Visit>
 void for_each_block(Visit visit) {
-  Catalogue::for_each([&]<class B> {
-    SCOPED_TRACE(std::string(B::about.name));
-    visit.template operator()<B>();
-  });
+  for (const ContractBlock& block : contract_blocks()) {
+    SCOPED_TRACE(std::string(block.about->name));
+    visit(block);
+  }
 }
 
-/// Runs visit.operator()<B>(seed, ts) for every block with several sample times and seeds.
+/// Calls visit(block, seed, ts) for every block with several sample times and seeds.
 template <class Visit>
 void for_each_run(Visit visit) {
-  for_each_block([&]<class B> {
+  for_each_block([&](const ContractBlock& block) {
     for (const double ts : sample_times) {
       for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed) + ", TS " + std::to_string(ts));
-        visit.template operator()<B>(seed, ts);
+        visit(block, seed, ts);
       }
     }
   });

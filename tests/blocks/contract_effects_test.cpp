@@ -3,61 +3,51 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
+#include <vector>
 
 #include "tests/blocks/contract.hpp"
 #include "tests/blocks/random_io.hpp"
-#include "tests/blocks/stepper.hpp"
 
 namespace hysteron::testing {
 namespace {
 
 TEST(Contract, AnEffectPassesItsInputThroughWhereNeutral) {
-  for_each_block([]<class B> {
-    if (B::about.effect.empty()) {
+  for_each_block([](const ContractBlock& block) {
+    if (block.about->effect.empty()) {
       return;
     }
-    if constexpr (requires(DoubleIn<B> in, typename B::template Out<double> out) {
-                    { in.XIN } -> std::same_as<double&>;
-                    { out.XOUT } -> std::same_as<double&>;
-                  }) {
-      auto params = presets<DoubleParams<B>>();
-      EXPECT_GT(neutralise(params), 0) << "an effect has a neutral setting";
+    const auto xin = real_place(block.in, "XIN");
+    const auto xout = real_place(block.out, "XOUT");
+    ASSERT_TRUE(xin && xout) << "an effect stands between XIN and XOUT";
+    auto params = preset_numbers(block.params);
+    EXPECT_GT(neutralise(block.params, params), 0) << "an effect has a neutral setting";
 
-      for (const double ts : sample_times) {
-        RandomIo random(1, ts);
-        Stepper<B> block(ts, params);
-        auto in = presets<DoubleIn<B>>();
-        for (int k = 0; k < steps; ++k) {
-          in.XIN = (random.unit() - 0.5) * std::pow(10.0, 40.0 * (random.unit() - 0.5));
-          ASSERT_TRUE(same_bits(block(in).XOUT, in.XIN)) << "step " << k << ", XIN " << in.XIN;
-        }
+    std::vector<double> out(places(block.out).back());
+    for (const double ts : sample_times) {
+      RandomIo random(1, ts);
+      const auto run = block.in_double(params, ts);
+      auto in = preset_numbers(block.in);
+      for (int k = 0; k < steps; ++k) {
+        in[*xin] = (random.unit() - 0.5) * std::pow(10.0, 40.0 * (random.unit() - 0.5));
+        run->step(in, out);
+        ASSERT_TRUE(same_bits(out[*xout], in[*xin])) << "step " << k << ", XIN " << in[*xin];
       }
-    } else {
-      ADD_FAILURE() << "an effect stands between XIN and XOUT";
     }
   });
 }
 
-/// The fields of a structure by their names.
-template <class Struct>
-std::map<std::string_view, Field> by_name() {
-  std::map<std::string_view, Field> fields;
-  for (const Field& field : fields_of<Struct>()) {
-    fields.emplace(field.name, field);
+void expect_fields_of_both(std::span<const Field> rich_fields, std::span<const Field> plain_fields) {
+  std::map<std::string_view, Field> rich;
+  for (const Field& field : rich_fields) {
+    rich.emplace(field.name, field);
   }
-  return fields;
-}
-
-template <class Rich, class Plain>
-void expect_fields_of_both() {
-  const auto rich = by_name<Rich>();
-  for (const Field& plain : fields_of<Plain>()) {
+  for (const Field& plain : plain_fields) {
     SCOPED_TRACE(std::string(plain.name));
     ASSERT_TRUE(rich.contains(plain.name));
     const Field& field = rich.at(plain.name);
@@ -71,83 +61,85 @@ void expect_fields_of_both() {
   }
 }
 
-/// Writes the members of one structure into those of the same name in another.
-template <class To, class From>
-void copy_by_name(To& to, const From& from) {
-  const auto set = [&](const auto& target, const auto& source) {
-    using Member = std::remove_reference_t<decltype(to.*(target.member))>;
-    if constexpr (std::is_same_v<Member, std::remove_cvref_t<decltype(from.*(source.member))>>) {
-      if (target.name == source.name) {
-        to.*(target.member) = from.*(source.member);
+/// Numbers of a structure, with those of another one written over the fields that have the same name, type and length.
+void copy_by_name(std::span<const Field> to_fields, std::vector<double>& to, std::span<const Field> from_fields,
+                  const std::vector<double>& from) {
+  const auto to_places = places(to_fields);
+  const auto from_places = places(from_fields);
+  for (std::size_t i = 0; i < to_fields.size(); ++i) {
+    for (std::size_t j = 0; j < from_fields.size(); ++j) {
+      const Field& target = to_fields[i];
+      const Field& source = from_fields[j];
+      if (target.name == source.name && target.type == source.type && target.length == source.length) {
+        for (std::size_t k = 0; k < target.length; ++k) {
+          to[to_places[i] + k] = from[from_places[j] + k];
+        }
       }
     }
-  };
-  To::fields().apply([&](const auto&... target) {
-    const auto each = [&](const auto& one) {
-      From::fields().apply([&](const auto&... source) { (set(one, source), ...); });
-    };
-    (each(target), ...);
-  });
+  }
 }
 
 /// A block that enriches another, beside that one, on the same random inputs and parameters.
-template <class Rich, class Plain>
-void expect_enriched(std::uint64_t seed, double ts) {
+void expect_enriched(const ContractBlock& rich, const ContractBlock& plain, std::uint64_t seed, double ts) {
   RandomIo random(seed, ts);
-  auto rich_params = random.make<DoubleParams<Rich>>();
-  EXPECT_GT(neutralise(rich_params), 0);
-  const auto plain_params = random.make<DoubleParams<Plain>>();
-  copy_by_name(rich_params, plain_params);
-  Stepper<Rich> rich(ts, rich_params);
-  Stepper<Plain> plain(ts, plain_params);
+  auto rich_params = random.numbers(rich.params);
+  EXPECT_GT(neutralise(rich.params, rich_params), 0);
+  const auto plain_params = random.numbers(plain.params);
+  copy_by_name(rich.params, rich_params, plain.params, plain_params);
+  const auto rich_run = rich.in_double(rich_params, ts);
+  const auto plain_run = plain.in_double(plain_params, ts);
+  std::vector<double> rich_out(places(rich.out).back());
+  std::vector<double> expected(places(plain.out).back());
   for (int k = 0; k < steps; ++k) {
-    auto rich_in = random.make<DoubleIn<Rich>>();
-    const auto plain_in = random.make<DoubleIn<Plain>>();
-    copy_by_name(rich_in, plain_in);
-    const auto expected = plain(plain_in);
+    auto rich_in = random.numbers(rich.in);
+    const auto plain_in = random.numbers(plain.in);
+    copy_by_name(rich.in, rich_in, plain.in, plain_in);
+    plain_run->step(plain_in, expected);
+    rich_run->step(rich_in, rich_out);
     auto common = expected;
-    copy_by_name(common, rich(rich_in));
+    copy_by_name(plain.out, common, rich.out, rich_out);
     ASSERT_EQ(bits(common), bits(expected)) << "step " << k;
   }
 }
 
 TEST(Contract, AnEnrichingBlockIsTheBlockItReplacesWhereNeutral) {
-  for_each_run([]<class Rich>(std::uint64_t seed, double ts) {
-    if constexpr (!Rich::about.enriches.empty()) {
-      int found = 0;
-      Catalogue::for_each([&]<class Plain> {
-        if constexpr (Plain::about.name == Rich::about.enriches) {
-          ++found;
-          expect_fields_of_both<DoubleIn<Rich>, DoubleIn<Plain>>();
-          expect_fields_of_both<DoubleParams<Rich>, DoubleParams<Plain>>();
-          expect_fields_of_both<typename Rich::template Out<double>, typename Plain::template Out<double>>();
-          expect_enriched<Rich, Plain>(seed, ts);
-        }
-      });
-      EXPECT_EQ(found, 1) << Rich::about.enriches << " is no block";
+  int enriching = 0;
+  for_each_run([&](const ContractBlock& rich, std::uint64_t seed, double ts) {
+    if (rich.about->enriches.empty()) {
+      return;
     }
+    ++enriching;
+    int found = 0;
+    for (const ContractBlock& plain : contract_blocks()) {
+      if (plain.about->name == rich.about->enriches) {
+        ++found;
+        expect_fields_of_both(rich.in, plain.in);
+        expect_fields_of_both(rich.params, plain.params);
+        expect_fields_of_both(rich.out, plain.out);
+        expect_enriched(rich, plain, seed, ts);
+      }
+    }
+    EXPECT_EQ(found, 1) << rich.about->enriches << " is no block";
   });
+  EXPECT_GT(enriching, 0);
 }
 
 TEST(Contract, ABorderBetweenRatesOnlyPassesOn) {
   int borders = 0;
-  for_each_block([&]<class B> {
-    if (!B::about.rate_transition) {
+  for_each_block([&](const ContractBlock& block) {
+    if (!block.about->rate_transition) {
       return;
     }
     ++borders;
-    if constexpr (requires(DoubleIn<B> in, typename B::template Out<double> out) {
-                    { in.XIN } -> std::same_as<double&>;
-                    { out.XOUT } -> std::same_as<double&>;
-                  }) {
-      EXPECT_FALSE(HasMemory<B>);
-      Stepper<B> block(1.0);
-      auto in = presets<DoubleIn<B>>();
-      in.XIN = 0.1;
-      EXPECT_EQ(block(in).XOUT, 0.1);
-    } else {
-      ADD_FAILURE() << "a border has XIN and XOUT";
-    }
+    const auto xin = real_place(block.in, "XIN");
+    const auto xout = real_place(block.out, "XOUT");
+    ASSERT_TRUE(xin && xout) << "a border has XIN and XOUT";
+    EXPECT_TRUE(block.state.empty());
+    auto in = preset_numbers(block.in);
+    in[*xin] = 0.1;
+    std::vector<double> out(places(block.out).back());
+    block.in_double(preset_numbers(block.params), 1.0)->step(in, out);
+    EXPECT_EQ(out[*xout], 0.1);
   });
   EXPECT_EQ(borders, 2);
 }

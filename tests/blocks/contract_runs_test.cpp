@@ -4,89 +4,96 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "tests/blocks/contract.hpp"
-#include "tests/blocks/explicit_double.hpp"
 #include "tests/blocks/random_io.hpp"
-#include "tests/blocks/stepper.hpp"
 #include "tests/support/counted_new.hpp"
 
 namespace hysteron::testing {
 namespace {
 
-/// The bits of all outputs of a run on random inputs, with the block in scalar S.
-template <class B, class S>
-std::vector<std::vector<std::uint64_t>> run_in(std::uint64_t seed, double ts) {
-  RandomIo random(seed, ts);
-  Stepper<B, S> block(S(ts), convert<typename B::template Params<S>>(random.make<DoubleParams<B>>()));
-  std::vector<std::vector<std::uint64_t>> result;
-  for (int k = 0; k < steps; ++k) {
-    result.push_back(bits(block(convert<typename B::template In<S>>(random.make<DoubleIn<B>>()))));
+/// A run with random parameters, and what it is given and gives.
+template <class Run>
+class RandomRun {
+ public:
+  RandomRun(const ContractBlock& block, MakeRun<Run> make, std::uint64_t seed, double ts)
+      : block_(block),
+        random_(seed, ts),
+        run_(make(random_.numbers(block.params), ts)),
+        out_(places(block.out).back()) {}
+
+  std::vector<double> draw() { return random_.numbers(block_.in); }
+  std::vector<std::uint64_t> step(const std::vector<double>& in) {
+    run_->step(in, out_);
+    return bits(out_);
   }
-  return result;
-}
+  std::vector<double>& out() { return out_; }
+  Run& operator*() { return *run_; }
+
+ private:
+  const ContractBlock& block_;
+  RandomIo random_;
+  std::unique_ptr<Run> run_;
+  std::vector<double> out_;
+};
 
 TEST(Contract, ResetStartsAnew) {
-  for_each_run([]<class B>(std::uint64_t seed, double ts) {
-    RandomIo random(seed, ts);
-    Stepper<B> block(ts, random.make<DoubleParams<B>>());
-    std::vector<DoubleIn<B>> inputs;
-    for (int k = 0; k < steps; ++k) {
-      inputs.push_back(random.make<DoubleIn<B>>());
-    }
+  for_each_run([](const ContractBlock& block, std::uint64_t seed, double ts) {
+    RandomRun run(block, block.in_double, seed, ts);
+    std::vector<std::vector<double>> inputs;
     std::vector<std::vector<std::uint64_t>> first;
-    for (const auto& in : inputs) {
-      first.push_back(bits(block(in)));
+    for (int k = 0; k < steps; ++k) {
+      inputs.push_back(run.draw());
+      first.push_back(run.step(inputs.back()));
     }
-    block.reset();
+    (*run).reset();
     for (int k = 0; k < steps; ++k) {
       const auto i = static_cast<std::size_t>(k);
-      ASSERT_EQ(bits(block(inputs[i])), first[i]) << "step " << k;
+      ASSERT_EQ(run.step(inputs[i]), first[i]) << "step " << k;
     }
   });
 }
 
 TEST(Contract, OutputLeavesTheStateAlone) {
-  for_each_run([]<class B>(std::uint64_t seed, double ts) {
-    RandomIo random(seed, ts);
-    Stepper<B> block(ts, random.make<DoubleParams<B>>());
+  for_each_run([](const ContractBlock& block, std::uint64_t seed, double ts) {
+    RandomRun run(block, block.in_double, seed, ts);
+    std::vector<double> once(run.out().size());
     for (int k = 0; k < steps; ++k) {
-      const auto in = random.make<DoubleIn<B>>();
-      const auto once = B::output(block.params, block.state, in, ts);
-      ASSERT_EQ(bits(block(in)), bits(once)) << "step " << k;
+      const auto in = run.draw();
+      (*run).output(in, once);
+      ASSERT_EQ(run.step(in), bits(once)) << "step " << k;
     }
   });
 }
 
 TEST(Contract, AStepAtOnceIsOutputAndUpdate) {
   int count = 0;
-  for_each_run([&]<class B>(std::uint64_t seed, double ts) {
-    if constexpr (StepsAtOnce<B>) {
+  for_each_run([&](const ContractBlock& block, std::uint64_t seed, double ts) {
+    if (block.steps_at_once) {
       ++count;
-      RandomIo random(seed, ts);
-      Stepper<B> block(ts, random.make<DoubleParams<B>>());
-      auto state = block.state;
+      RandomRun run(block, block.in_double, seed, ts);
+      RandomRun at_once(block, block.in_double, seed, ts);
       for (int k = 0; k < steps; ++k) {
-        const auto in = random.make<DoubleIn<B>>();
-        const auto out = B::template step<double>(block.params, state, in, ts);
-        ASSERT_EQ(bits(block(in)), bits(out)) << "step " << k;
+        const auto in = run.draw();
+        (*at_once).step_at_once(in, at_once.out());
+        ASSERT_EQ(run.step(in), bits(at_once.out())) << "step " << k;
       }
-      EXPECT_EQ(bits(state), bits(block.state));
+      EXPECT_EQ(bits((*at_once).memory()), bits((*run).memory()));
     }
   });
   EXPECT_GT(count, 0);
 }
 
 TEST(Contract, AStepAllocatesNothing) {
-  for_each_block([]<class B> {
-    RandomIo random(1, 1e-3);
-    Stepper<B> block(1e-3, random.make<DoubleParams<B>>());
-    const auto in = random.make<DoubleIn<B>>();
+  for_each_block([](const ContractBlock& block) {
+    RandomRun run(block, block.in_double, 1, 1e-3);
+    const auto in = run.draw();
     const std::size_t before = hysteron::test::allocations;
-    block.reset();
-    block(in);
-    block(in);
+    (*run).reset();
+    (*run).step(in, run.out());
+    (*run).step(in, run.out());
     EXPECT_EQ(hysteron::test::allocations, before);
   });
   const std::size_t before = hysteron::test::allocations;
@@ -94,33 +101,39 @@ TEST(Contract, AStepAllocatesNothing) {
   EXPECT_EQ(hysteron::test::allocations, before + 1) << "the counter counts";
 }
 
-template <class B, class S>
-void expect_finite(std::uint64_t seed, double ts) {
-  RandomIo random(seed, ts);
-  Stepper<B, S> block(static_cast<S>(ts), convert<typename B::template Params<S>>(random.make<DoubleParams<B>>()));
+template <class Run>
+void expect_finite(const ContractBlock& block, MakeRun<Run> make, std::uint64_t seed, double ts) {
+  RandomRun run(block, make, seed, ts);
   for (int k = 0; k < steps; ++k) {
-    const auto out = block(convert<typename B::template In<S>>(random.make<DoubleIn<B>>()));
-    for (const double value : reals(out)) {
+    run.step(run.draw());
+    for (const double value : run.out()) {
       ASSERT_TRUE(std::isfinite(value)) << "step " << k;
     }
   }
 }
 
 TEST(Contract, OutputsAreFiniteInDouble) {
-  for_each_run([]<class B>(std::uint64_t seed, double ts) { expect_finite<B, double>(seed, ts); });
+  for_each_run([](const ContractBlock& block, std::uint64_t seed, double ts) {
+    expect_finite(block, block.in_double, seed, ts);
+  });
 }
 
 TEST(Contract, OutputsAreFiniteInFloat) {
-  for_each_block([]<class B> {
+  for_each_block([](const ContractBlock& block) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-      expect_finite<B, float>(seed, 1e-3);
+      expect_finite(block, block.in_float, seed, 1e-3);
     }
   });
 }
 
 TEST(Contract, ExplicitDoubleGivesTheBitsOfDouble) {
-  for_each_run([]<class B>(std::uint64_t seed, double ts) {
-    ASSERT_EQ((run_in<B, ExplicitDouble>(seed, ts)), (run_in<B, double>(seed, ts)));
+  for_each_run([](const ContractBlock& block, std::uint64_t seed, double ts) {
+    RandomRun run(block, block.in_double, seed, ts);
+    RandomRun explicitly(block, block.in_explicit_double, seed, ts);
+    for (int k = 0; k < steps; ++k) {
+      const auto in = run.draw();
+      ASSERT_EQ(explicitly.step(in), run.step(in)) << "step " << k;
+    }
   });
 }
 

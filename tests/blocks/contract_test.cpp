@@ -7,9 +7,9 @@
 #include <cctype>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 
 namespace hysteron::testing {
 namespace {
@@ -34,17 +34,16 @@ const std::set<std::string_view> reserved{
     "EXIT", "RETURN", "WHILE", "REPEAT", "UNTIL", "ACTION", "PROGRAM", "CONSTANT"};
 
 TEST(Contract, EveryBlockIsAFunctionBlock) {
-  for_each_block([]<class B> {
-    EXPECT_TRUE(FunctionBlock<B>);
-    EXPECT_TRUE(std::is_trivially_copyable_v<typename B::template State<double>>);
-    EXPECT_TRUE(std::is_trivially_copyable_v<DoubleParams<B>>);
+  for_each_block([](const ContractBlock& block) {
+    EXPECT_TRUE(block.is_function_block);
+    EXPECT_TRUE(block.is_trivially_copyable);
   });
 }
 
 TEST(Contract, EveryBlockIsDescribed) {
   std::set<std::string_view> names;
-  for_each_block([&]<class B> {
-    const About& about = B::about;
+  for_each_block([&](const ContractBlock& block) {
+    const About& about = *block.about;
     EXPECT_TRUE(names.insert(about.name).second) << "two blocks of one name";
     EXPECT_TRUE(about.name.starts_with("HY_") && is_name(about.name));
     EXPECT_GE(about.title.size(), 2U);
@@ -54,9 +53,8 @@ TEST(Contract, EveryBlockIsDescribed) {
   });
 }
 
-template <class Struct>
-void expect_described(std::set<std::string_view>& names, bool has_presets) {
-  for (const Field& field : fields_of<Struct>()) {
+void expect_described(std::span<const Field> fields, std::set<std::string_view>& names, bool has_presets) {
+  for (const Field& field : fields) {
     SCOPED_TRACE(std::string(field.name));
     EXPECT_TRUE(is_name(field.name));
     EXPECT_FALSE(reserved.contains(field.name)) << "a reserved name";
@@ -82,22 +80,21 @@ void expect_described(std::set<std::string_view>& names, bool has_presets) {
 }
 
 TEST(Contract, EveryFieldIsDescribed) {
-  for_each_block([]<class B> {
+  for_each_block([](const ContractBlock& block) {
     std::set<std::string_view> names;
-    expect_described<DoubleIn<B>>(names, true);
-    expect_described<DoubleParams<B>>(names, true);
-    expect_described<typename B::template Out<double>>(names, false);
-    expect_described<typename B::template State<double>>(names, true);
-    EXPECT_GT(fields_of<typename B::template Out<double>>().size(), 0U);
+    expect_described(block.in, names, true);
+    expect_described(block.params, names, true);
+    expect_described(block.out, names, false);
+    expect_described(block.state, names, true);
+    EXPECT_GT(block.out.size(), 0U);
     EXPECT_EQ(names.contains("ERROR"), names.contains("ERRORID")) << "an error comes as ERROR and ERRORID";
   });
 }
 
 TEST(Contract, OnlyEffectsHaveANeutralSetting) {
-  for_each_block([]<class B> {
-    if (B::about.effect.empty()) {
-      const auto fields = fields_of<DoubleParams<B>>();
-      for (const Field& field : fields) {
+  for_each_block([](const ContractBlock& block) {
+    if (block.about->effect.empty()) {
+      for (const Field& field : block.params) {
         const bool further = !field.shapes.empty();
         EXPECT_TRUE(field.has_neutral() ? further || !field.effect.empty() : field.effect.empty()) << field.name;
       }
@@ -111,10 +108,10 @@ TEST(Contract, EveryEffectIsOfAFamily) {
     EXPECT_EQ(effect.empty(), family == Family::None) << effect;
     EXPECT_EQ(families.try_emplace(effect, family).first->second, family) << effect << " is of two families";
   };
-  for_each_block([&]<class B> {
-    expect(B::about.effect, B::about.family);
-    EXPECT_TRUE(B::about.untried.empty() || !B::about.effect.empty());
-    for (const Field& field : fields_of<DoubleParams<B>>()) {
+  for_each_block([&](const ContractBlock& block) {
+    expect(block.about->effect, block.about->family);
+    EXPECT_TRUE(block.about->untried.empty() || !block.about->effect.empty());
+    for (const Field& field : block.params) {
       expect(field.effect, field.family);
     }
   });
@@ -133,8 +130,8 @@ TEST(Families, AreNamedAndSaidWhatTheyAre) {
 
 TEST(Contract, AParameterShapesAnEffectOfItsOwnBlock) {
   int count = 0;
-  for_each_block([&]<class B> {
-    const auto fields = fields_of<DoubleParams<B>>();
+  for_each_block([&](const ContractBlock& block) {
+    const auto fields = block.params;
     for (const Field& field : fields) {
       if (!field.shapes.empty()) {
         ++count;
@@ -148,7 +145,7 @@ TEST(Contract, AParameterShapesAnEffectOfItsOwnBlock) {
 }
 
 TEST(Contract, ARoleStandsWhereItMeansSomething) {
-  for_each_block([]<class B> {
+  for_each_block([](const ContractBlock& block) {
     const auto each = [](const auto& fields, bool are_params) {
       for (const Field& field : fields) {
         const bool of_params = text_of(field.role).stated || field.role == FieldRole::LowerBound ||
@@ -157,23 +154,22 @@ TEST(Contract, ARoleStandsWhereItMeansSomething) {
         EXPECT_TRUE(!of_params || are_params || field.role == FieldRole::StartValue) << field.name;
       }
     };
-    each(fields_of<DoubleParams<B>>(), true);
-    each(fields_of<DoubleIn<B>>(), false);
-    each(fields_of<typename B::template Out<double>>(), false);
-    each(fields_of<typename B::template State<double>>(), false);
-    const auto params = fields_of<DoubleParams<B>>();
+    each(block.params, true);
+    each(block.in, false);
+    each(block.out, false);
+    each(block.state, false);
+    const auto params = block.params;
     EXPECT_EQ(std::ranges::count(params, FieldRole::LowerBound, &Field::role),
               std::ranges::count(params, FieldRole::UpperBound, &Field::role));
   });
 }
 
 /// The names of a block's parameters that belong to an effect: all, or those of the field that has it.
-template <class B>
-std::set<std::string_view> names_of_effect(std::string_view effect) {
+std::set<std::string_view> names_of_effect(const ContractBlock& block, std::string_view effect) {
   std::set<std::string_view> names;
-  for (const Field& field : fields_of<DoubleParams<B>>()) {
-    if (B::about.effect == effect ? field.role != FieldRole::StartValue && field.type == Type::Real
-                                  : field.effect == effect) {
+  for (const Field& field : block.params) {
+    if (block.about->effect == effect ? field.role != FieldRole::StartValue && field.type == Type::Real
+                                      : field.effect == effect) {
       names.insert(field.name);
     }
   }
@@ -181,20 +177,20 @@ std::set<std::string_view> names_of_effect(std::string_view effect) {
 }
 
 TEST(Contract, ASimplerEffectHasSomeOfTheParameters) {
-  for_each_block([]<class Rich> {
-    if (Rich::about.simpler.empty()) {
+  for_each_block([](const ContractBlock& rich) {
+    if (rich.about->simpler.empty()) {
       return;
     }
-    const auto own = names_of_effect<Rich>(Rich::about.effect);
+    const auto own = names_of_effect(rich, rich.about->effect);
     int found = 0;
-    Catalogue::for_each([&]<class Plain> {
-      const auto names = names_of_effect<Plain>(Rich::about.simpler);
+    for (const ContractBlock& plain : contract_blocks()) {
+      const auto names = names_of_effect(plain, rich.about->simpler);
       if (!names.empty()) {
         ++found;
-        EXPECT_TRUE(std::ranges::includes(own, names)) << Plain::about.name;
+        EXPECT_TRUE(std::ranges::includes(own, names)) << plain.about->name;
       }
-    });
-    EXPECT_GT(found, 0) << Rich::about.simpler;
+    }
+    EXPECT_GT(found, 0) << rich.about->simpler;
   });
 }
 

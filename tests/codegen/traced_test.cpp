@@ -3,29 +3,28 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "blocks/catalogue.hpp"
 #include "codegen/trace/block_type.hpp"
 #include "codegen/trace/evaluate.hpp"
+#include "tests/blocks/any_block.hpp"
 #include "tests/blocks/random_io.hpp"
 
 namespace hysteron::testing {
 namespace {
 
-/// A structure as numbers, arrays in full.
-template <class Struct>
-std::vector<std::vector<double>> numbers(const Struct& structure) {
+/// Numbers by their fields, arrays in full.
+std::vector<std::vector<double>> by_field(std::span<const Field> fields, const std::vector<double>& numbers) {
   std::vector<std::vector<double>> result;
-  const auto append = [&](const auto& member) {
-    using Member = std::remove_cvref_t<decltype(member)>;
-    if constexpr (detail::is_array<Member>) {
-      result.emplace_back(member.begin(), member.end());
-    } else {
-      result.push_back({static_cast<double>(member)});
-    }
-  };
-  Struct::fields().apply([&](const auto&... field) { (append(structure.*(field.member)), ...); });
+  auto next = numbers.begin();
+  for (const Field& field : fields) {
+    result.emplace_back(next, next + field.length);
+    next += field.length;
+  }
   return result;
 }
 
@@ -133,47 +132,41 @@ class TapeRun {
   std::vector<double> values_;
 };
 
-template <class B>
-void hold_traced_against_run(double ts, std::uint64_t seed) {
-  const BlockType* type = find_block_type(B::about.name);
+void hold_traced_against_run(const AnyBlock& block, double ts, std::uint64_t seed) {
+  const BlockType* type = find_block_type(block.about->name);
   ASSERT_NE(type, nullptr);
   RandomIo random(seed, ts);
-  const auto params = random.make<typename B::template Params<double>>();
-  typename B::template State<double> state{};
-  if constexpr (HasMemory<B>) {
-    state = B::initial(params);
-  }
+  const auto params = random.numbers(block.params);
+  const auto run = block.in_double(params, ts);
   TapeRun tape(type->trace, ts);
-  const auto set_pins = [&](const auto& in) {
-    tape.pins = numbers(in);
-    for (auto& one : numbers(params)) {
+  const auto set_pins = [&](const std::vector<double>& in) {
+    tape.pins = by_field(block.in, in);
+    for (auto& one : by_field(block.params, params)) {
       tape.pins.push_back(std::move(one));
     }
   };
-  set_pins(typename B::template In<double>{});
-  tape.reset(type->states.size(), numbers(state));
+  set_pins(std::vector<double>(places(block.in).back()));
+  tape.reset(type->states.size(), by_field(block.state, run->memory()));
+  std::vector<double> out(places(block.out).back());
   for (int k = 0; k < 200; ++k) {
-    const auto in = random.make<typename B::template In<double>>();
+    const auto in = random.numbers(block.in);
     set_pins(in);
-    const auto out = B::output(params, state, in, ts);
-    if constexpr (HasMemory<B>) {
-      B::update(params, state, in, out, ts);
-    }
-    const auto expected = numbers(out);
+    run->step(in, out);
+    const auto expected = by_field(block.out, out);
     const auto got = tape.step();
     for (std::size_t i = 0; i < expected.size(); ++i) {
       ASSERT_EQ(std::bit_cast<std::uint64_t>(expected[i].front()), std::bit_cast<std::uint64_t>(got[i]))
-          << B::about.name << "." << type->outputs[i].name << " at step " << k << ": run " << expected[i].front()
+          << block.about->name << "." << type->outputs[i].name << " at step " << k << ": run " << expected[i].front()
           << ", traced " << got[i];
     }
-    ASSERT_EQ(numbers(state), tape.cells) << B::about.name << " at step " << k;
+    ASSERT_EQ(by_field(block.state, run->memory()), tape.cells) << block.about->name << " at step " << k;
   }
 }
 
 TEST(Traced, EveryBlockGivesTheBitsOfItsFunctions) {
   for (const double ts : {50e-6, 1e-3, 1.0}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-      Catalogue::for_each([&]<class B> { hold_traced_against_run<B>(ts, seed); });
+      Catalogue::for_each([&]<class B> { hold_traced_against_run(AnyBlock::of<B>(), ts, seed); });
     }
   }
 }

@@ -1,11 +1,16 @@
 // Dual against differences: the derivative that a block gives with dual numbers is the slope of what it computes.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "blocks/catalogue.hpp"
+#include "tests/blocks/any_block.hpp"
 #include "tests/blocks/random_io.hpp"
 #include "tuning/dual.hpp"
 
@@ -14,57 +19,56 @@ namespace {
 
 using D = Dual<1>;
 
-/// The last real outputs of a block after some steps, with one real number of parameters or inputs displaced.
-template <class B, class S>
-std::vector<S> run(double ts, std::uint64_t seed, std::size_t which, const S& displacement, bool neutral) {
-  RandomIo random(seed, ts);
-  auto plain = random.make<typename B::template Params<double>>();
-  if (neutral) {
-    neutralise(plain);
-  }
-  auto params = convert<typename B::template Params<S>>(plain);
-  std::size_t counter = 0;
-  const auto displace = [&](auto& member) {
-    if constexpr (std::is_same_v<std::remove_reference_t<decltype(member)>, S>) {
-      if (counter++ == which) {
-        member = member + displacement;
-      }
+/// Where the real numbers of a structure stand that are no elements of an array.
+std::vector<std::size_t> real_places(std::span<const Field> fields) {
+  std::vector<std::size_t> result;
+  const auto at = places(fields);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (fields[i].type == Type::Real && fields[i].length == 1) {
+      result.push_back(at[i]);
     }
-  };
-  B::template Params<S>::fields().apply([&](const auto&... field) { (displace(params.*(field.member)), ...); });
-  const std::size_t after_params = counter;
-  typename B::template State<S> state{};
-  if constexpr (HasMemory<B>) {
-    state = B::initial(params);
   }
-  std::vector<S> results;
-  for (int k = 0; k < 12; ++k) {
-    auto in = convert<typename B::template In<S>>(random.make<typename B::template In<double>>());
-    counter = after_params;
-    B::template In<S>::fields().apply([&](const auto&... field) { (displace(in.*(field.member)), ...); });
-    const auto out = B::output(params, state, in, S(ts));
-    if constexpr (HasMemory<B>) {
-      B::update(params, state, in, out, S(ts));
-    }
-    const auto collect = [&](const auto& member) {
-      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(member)>, S>) {
-        results.push_back(member);
-      }
-    };
-    B::template Out<S>::fields().apply([&](const auto&... field) { (collect(out.*(field.member)), ...); });
-  }
-  return results;
+  return result;
 }
 
-template <class Struct>
-std::size_t real_members() {
-  std::size_t count = 0;
-  Struct::fields().apply([&](const auto&... field) {
-    ((count +=
-      std::is_same_v<std::remove_cvref_t<decltype(std::declval<Struct&>().*(field.member))>, double> ? 1U : 0U),
-     ...);
-  });
-  return count;
+/// Parameters, and the inputs of some steps.
+struct Given {
+  std::vector<double> params;
+  std::vector<std::vector<double>> inputs;
+};
+
+template <class S>
+std::vector<S> in_scalar(const std::vector<double>& numbers) {
+  return std::vector<S>(numbers.begin(), numbers.end());
+}
+
+/// The real outputs of some steps, with one real number of the parameters, then of the inputs, displaced.
+template <class S, class Run>
+std::vector<S> run(const AnyBlock& block, MakeRun<Run, S> make, const Given& given, double ts, std::size_t which,
+                   const S& displacement) {
+  const auto of_params = real_places(block.params);
+  const auto of_inputs = real_places(block.in);
+  const auto displace = [&](std::vector<S>& numbers, std::size_t place) {
+    numbers[place] = numbers[place] + displacement;
+  };
+  auto params = in_scalar<S>(given.params);
+  if (which < of_params.size()) {
+    displace(params, of_params[which]);
+  }
+  const auto one = make(params, ts);
+  std::vector<S> out(places(block.out).back());
+  std::vector<S> results;
+  for (const auto& input : given.inputs) {
+    auto in = in_scalar<S>(input);
+    if (which >= of_params.size()) {
+      displace(in, of_inputs[which - of_params.size()]);
+    }
+    one->step(in, out);
+    for (const std::size_t place : real_places(block.out)) {
+      results.push_back(out[place]);
+    }
+  }
+  return results;
 }
 
 struct Tally {
@@ -73,22 +77,29 @@ struct Tally {
 };
 
 // A difference quotient is compared where the function is smooth there: two quotients of different width agree.
-template <class B>
-void hold_dual_against_differences(double ts, std::uint64_t seed, bool neutral, Tally& tally) {
-  const std::size_t numbers =
-      real_members<typename B::template Params<double>>() + real_members<typename B::template In<double>>();
+void hold_dual_against_differences(const AnyBlock& block, MakeRun<AnyRun<D>, D> in_dual, double ts, std::uint64_t seed,
+                                   bool neutral, Tally& tally) {
+  RandomIo random(seed, ts);
+  Given given{.params = random.numbers(block.params), .inputs = {}};
+  if (neutral) {
+    neutralise(block.params, given.params);
+  }
+  for (int k = 0; k < 12; ++k) {
+    given.inputs.push_back(random.numbers(block.in));
+  }
+  const std::size_t numbers = real_places(block.params).size() + real_places(block.in).size();
   for (std::size_t which = 0; which < numbers; ++which) {
-    const auto exact = run<B, D>(ts, seed, which, D::variable(0.0, 0), neutral);
-    const auto here = run<B, double>(ts, seed, which, 0.0, neutral);
+    const auto exact = run(block, in_dual, given, ts, which, D::variable(0.0, 0));
+    const auto here = run(block, block.in_double, given, ts, which, 0.0);
     std::array<std::vector<double>, 4> at;
     constexpr std::array<double, 4> step{1e-6, -1e-6, 2e-6, -2e-6};
     for (std::size_t i = 0; i < 4; ++i) {
-      at[i] = run<B, double>(ts, seed, which, step[i], neutral);
+      at[i] = run(block, block.in_double, given, ts, which, step[i]);
     }
     for (std::size_t i = 0; i < here.size(); ++i) {
       ASSERT_EQ(std::bit_cast<std::uint64_t>(exact[i].value()), std::bit_cast<std::uint64_t>(here[i]))
-          << B::about.name << ": the value of a dual is the plain value";
-      ASSERT_FALSE(std::isnan(exact[i].derivative(0))) << B::about.name << " member " << which << " seed " << seed;
+          << block.about->name << ": the value of a dual is the plain value";
+      ASSERT_FALSE(std::isnan(exact[i].derivative(0))) << block.about->name << " member " << which << " seed " << seed;
       const double right = (at[0][i] - here[i]) / 1e-6;
       const double left = (here[i] - at[1][i]) / 1e-6;
       const double wide = (at[2][i] - at[3][i]) / 4e-6;
@@ -101,7 +112,7 @@ void hold_dual_against_differences(double ts, std::uint64_t seed, bool neutral, 
       }
       ++tally.compared;
       EXPECT_NEAR(exact[i].derivative(0), narrow, 1e-3 * scale + rounding)
-          << B::about.name << " real member " << which << " seed " << seed << " result " << i
+          << block.about->name << " real member " << which << " seed " << seed << " result " << i
           << (neutral ? " neutral" : "");
     }
   }
@@ -110,7 +121,9 @@ void hold_dual_against_differences(double ts, std::uint64_t seed, bool neutral, 
 TEST(Dual, EveryBlocksDerivativeIsTheSlopeOfItsOutputs) {
   Tally tally;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    Catalogue::for_each([&]<class B> { hold_dual_against_differences<B>(1e-2, seed, false, tally); });
+    Catalogue::for_each([&]<class B> {
+      hold_dual_against_differences(AnyBlock::of<B>(), make_run<B, D, D>, 1e-2, seed, false, tally);
+    });
   }
   EXPECT_GT(tally.compared, 20 * tally.kinks) << "nearly all points are smooth";
 }
@@ -119,8 +132,8 @@ TEST(Dual, AlsoAtNeutralSettingsWhereEffectsBegin) {
   Tally tally;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Catalogue::for_each([&]<class B> {
-      if constexpr (!B::about.effect.empty()) {
-        hold_dual_against_differences<B>(1e-2, seed, true, tally);
+      if (!B::about.effect.empty()) {
+        hold_dual_against_differences(AnyBlock::of<B>(), make_run<B, D, D>, 1e-2, seed, true, tally);
       }
     });
   }

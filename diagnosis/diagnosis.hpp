@@ -48,6 +48,8 @@ struct EffectFinding {
   std::vector<std::string> same_edges{};  ///< edges that this record cannot tell from it
   std::vector<std::string> drivers{};     ///< signals that drive it, besides that of its edge
   double share = 0.0;                     ///< of the gap that calibration leaves, with the glitches in it
+  bool around_plant = false;              ///< in the loop around a plant that was weighed alone: the gap is that at the
+                                          ///< outputs, while the others' is what the plant lacks
   Inverse inverse = Inverse::None;
   std::vector<ParameterFinding> parameters{};
   std::vector<SettingFinding> settings{};

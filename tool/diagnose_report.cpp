@@ -112,10 +112,10 @@ std::string diagnosis_text(const Diagnosis& found) {
     text += budget_text(*found.budget);
   }
   for (const diagnosis::EffectFinding& effect : found.effects) {
-    text += fmt::format("  {} at {}{}{}: {:.0f} % of the gap\n", effect.id, effect.edge,
+    text += fmt::format("  {} at {}{}{}: {:.0f} % of the gap{}\n", effect.id, effect.edge,
                         effect.same_edges.empty() ? "" : fmt::format(" (or {})", fmt::join(effect.same_edges, ", ")),
                         effect.drivers.empty() ? "" : fmt::format(", driven by {}", fmt::join(effect.drivers, ", ")),
-                        100.0 * effect.share);
+                        100.0 * effect.share, effect.around_plant ? " at the outputs, around the plant" : "");
     for (const ParameterFinding& one : effect.parameters) {
       text += line_of(one);
     }
@@ -133,10 +133,9 @@ std::string diagnosis_text(const Diagnosis& found) {
   if (found.rivals.size() > 1) {
     text += "  not ruled out:\n";
     for (const diagnosis::Rival& rival : found.rivals) {
-      const std::string set =
-          rival.effects.empty()
-              ? "calibration alone"
-              : fmt::format("{} at {}", fmt::join(rival.effects, " + "), fmt::join(rival.edges, ", "));
+      const std::string set = rival.effects.empty() ? "calibration alone"
+                                                    : fmt::format("{} at {}", fmt::join(rival.effects, " + "),
+                                                                  fmt::join(rival.edges, ", "));
       text += fmt::format("    {:<44} {:.2f}\n", set, rival.probability);
     }
   }

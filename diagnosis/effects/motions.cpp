@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "codegen/graph/unit.hpp"
@@ -157,6 +158,28 @@ bool is_balance(const Graph& graph, const Wire& signal, const std::string& passe
            const Wire& wire = graph.wire(node, 0);
            return wire.from == Wire::From::Node && graph.nodes[wire.index].path == passed_on_by;
          });
+}
+
+std::vector<std::size_t> steps_behind(const Graph& graph, const std::vector<std::uint32_t>& nodes) {
+  std::vector<std::size_t> result(graph.nodes.size(), unconnected);
+  std::vector<std::uint32_t> front = nodes;
+  for (const std::uint32_t node : nodes) {
+    result[node] = 0;
+  }
+  for (std::size_t step = 1; !front.empty(); ++step) {
+    std::vector<std::uint32_t> next;
+    for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
+      for (std::size_t pin = 0; result[i] == unconnected && pin < graph.nodes[i].wire_count; ++pin) {
+        const Wire& wire = graph.wire(graph.nodes[i], pin);
+        if (wire.from == Wire::From::Node && std::ranges::find(front, wire.index) != front.end()) {
+          result[i] = step;
+          next.push_back(i);
+        }
+      }
+    }
+    front = std::move(next);
+  }
+  return result;
 }
 
 }  // namespace hysteron::diagnosis

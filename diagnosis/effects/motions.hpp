@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <string_view>
+#include <vector>
 
 #include "codegen/graph/graph.hpp"
 
@@ -33,5 +36,11 @@ namespace hysteron::diagnosis {
 /// Whether a signal is a sum, and what a node of that path passes on of it is integrated: a balance of forces, of
 /// flows, of heats, whose excess is stored.
 [[nodiscard]] bool is_balance(const Graph& graph, const Wire& signal, const std::string& passed_on_by);
+
+/// What no wire leads to.
+inline constexpr std::size_t unconnected = std::numeric_limits<std::size_t>::max();
+
+/// How many wires behind some nodes each node is; these themselves 0.
+[[nodiscard]] std::vector<std::size_t> steps_behind(const Graph& graph, const std::vector<std::uint32_t>& nodes);
 
 }  // namespace hysteron::diagnosis

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "diagnosis/effects/motions.hpp"
 #include "diagnosis/effects/starts.hpp"
 #include "diagnosis/evidence/output_space.hpp"
 #include "diagnosis/model/refusal.hpp"
@@ -24,10 +25,21 @@ std::string wire_name(const Graph& graph, const std::string& driver) {
   return node.path + "." + std::string(node.block->outputs[output->wire.port].name);
 }
 
-/// Of candidates the one on the law's edge with its drivers; of a driver that no wire carries, a rate, any.
+/// How many wires behind its own block a candidate's first driver is: a velocity that comes about from the force at
+/// once is nearer than one that a controller finds from the position.
+std::size_t steps_to_driver(const Candidate& one) {
+  const Graph& graph = one.variant.program->graph;
+  const Node* const own = find_node(graph, one.own().instance);
+  if (own == nullptr || one.auxiliary.empty() || one.auxiliary.front().from != Wire::From::Node) {
+    return unconnected;
+  }
+  return steps_behind(graph, {static_cast<std::uint32_t>(own - graph.nodes.data())})[one.auxiliary.front().index];
+}
+
+/// Of candidates the one on the law's edge with its drivers; of a driver that no wire carries, a rate, the nearest.
 const Candidate* fitting(const std::vector<Candidate>& list, const Graph& graph, const LawFinding& law) {
   const Candidate* best = nullptr;
-  int best_rank = 0;
+  std::pair<int, std::size_t> best_rank{0, 0};  // the first as large, then the second as small as can be
   for (const Candidate& one : list) {
     const std::string edge = in_the_diagram(one.own().edge, one.variant.effects);
     if (!language::same_name(edge, law.edge)) {
@@ -37,8 +49,9 @@ const Candidate* fitting(const std::vector<Candidate>& list, const Graph& graph,
     const bool same = driven && (law.drivers.empty() || language::same_name(one.own().wires.front().second,
                                                                             wire_name(graph, law.drivers.front())));
     const int rank = same ? 2 : driven ? 1 : 0;
-    if (rank > best_rank) {
-      best_rank = rank;
+    const std::size_t steps = steps_to_driver(one);
+    if (rank > best_rank.first || (rank > 0 && rank == best_rank.first && steps < best_rank.second)) {
+      best_rank = {rank, steps};
       best = &one;
     }
   }

@@ -1,42 +1,14 @@
 #include "diagnosis/evidence/open_loop.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "diagnosis/effects/insertion.hpp"
+#include "diagnosis/effects/motions.hpp"
 
 namespace hysteron::diagnosis {
-namespace {
-
-/// The nodes that depend on one, by how few wires; itself at 0.
-std::vector<std::size_t> distances(const Graph& graph, const std::vector<std::uint32_t>& from) {
-  constexpr std::size_t far = std::numeric_limits<std::size_t>::max();
-  std::vector<std::size_t> result(graph.nodes.size(), far);
-  std::vector<std::uint32_t> front = from;
-  for (const std::uint32_t node : from) {
-    result[node] = 0;
-  }
-  for (std::size_t step = 1; !front.empty(); ++step) {
-    std::vector<std::uint32_t> next;
-    for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
-      for (std::size_t pin = 0; result[i] == far && pin < graph.nodes[i].wire_count; ++pin) {
-        const Wire& wire = graph.wire(graph.nodes[i], pin);
-        if (wire.from == Wire::From::Node && std::ranges::find(front, wire.index) != front.end()) {
-          result[i] = step;
-          next.push_back(i);
-        }
-      }
-    }
-    front = std::move(next);
-  }
-  return result;
-}
-
-}  // namespace
 
 std::optional<OpenLoop> opened(const Task& task, const std::string& top, const Variant& variant) {
-  constexpr std::size_t far = std::numeric_limits<std::size_t>::max();
   const Graph& graph = variant.program->graph;
   std::vector<std::uint32_t> entries;  // what reads a column
   for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
@@ -48,19 +20,19 @@ std::optional<OpenLoop> opened(const Task& task, const std::string& top, const V
       }
     }
   }
-  const std::vector<std::size_t> from_inputs = distances(graph, entries);
+  const std::vector<std::size_t> from_inputs = steps_behind(graph, entries);
   const Port* cut = nullptr;
-  std::size_t nearest = far;
+  std::size_t nearest = unconnected;
   for (const std::string& name : task.outputs) {
     const Port* const port = find_port(graph.outputs, name);
     if (port->wire.from != Wire::From::Node) {
       continue;
     }
-    const std::vector<std::size_t> behind = distances(graph, {port->wire.index});
+    const std::vector<std::size_t> behind = steps_behind(graph, {port->wire.index});
     const bool in_loop = std::ranges::any_of(task.outputs, [&](const std::string& other) {
       const Wire& wire = find_port(graph.outputs, other)->wire;
-      return other != name && wire.from == Wire::From::Node && behind[wire.index] != far &&
-             distances(graph, {wire.index})[port->wire.index] != far;
+      return other != name && wire.from == Wire::From::Node && behind[wire.index] != unconnected &&
+             steps_behind(graph, {wire.index})[port->wire.index] != unconnected;
     });
     if (in_loop && from_inputs[port->wire.index] < nearest) {
       nearest = from_inputs[port->wire.index];

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -73,12 +72,6 @@ std::string sizes_of(const EffectFinding& effect, const MissingPicture& picture)
   return sizes.empty() || sizes.size() > 2 ? std::string() : fmt::format("{} {}", fmt::join(sizes, ", "), picture.unit);
 }
 
-/// Whether an effect is one of the set, and not of the loop around the plant that the set is about.
-bool is_of(const SetFinding& set, const EffectFinding& effect) {
-  return std::ranges::any_of(set.laws,
-                             [&](const LawFinding& law) { return law.effect == effect.id && law.edge == effect.edge; });
-}
-
 std::string percent(double share) {
   return fmt::format("{:.0f} %", 100.0 * std::clamp(share, 0.0, 1.0));
 }
@@ -123,8 +116,13 @@ void tell(const Evidence& evidence, const Rules& rules, Diagnosis& result) {
   };
   std::ranges::stable_sort(effects, [](const EffectFinding& a, const EffectFinding& b) { return a.share > b.share; });
   (void)std::stable_partition(effects.begin(), effects.end(), in_front);
-  std::ranges::copy_if(result.effects, std::back_inserter(effects),
-                       [&](const EffectFinding& one) { return !is_of(first, one); });
+  for (EffectFinding& fitted : result.effects) {
+    fitted.around_plant = std::ranges::none_of(
+        first.laws, [&](const LawFinding& law) { return law.effect == fitted.id && law.edge == fitted.edge; });
+    if (fitted.around_plant) {
+      effects.push_back(std::move(fitted));
+    }
+  }
   result.effects = std::move(effects);
   result.rivals.clear();
   for (const SetFinding& set : evidence.sets) {
@@ -178,7 +176,7 @@ std::string sentence_of(const Diagnosis& found, const Rules& rules) {
   }
   std::vector<std::string> around;
   for (const EffectFinding& one : found.effects) {
-    if (!is_of(first, one)) {
+    if (one.around_plant) {
       around.push_back(fmt::format("{} at {}", words_of_family(one.id), one.edge));
     }
   }

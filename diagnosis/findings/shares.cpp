@@ -133,6 +133,9 @@ GapSplit split_of(const std::vector<EffectFinding>& effects, const std::vector<E
   }
   GapSplit split{.open = 1.0};
   for (const EffectFinding& effect : effects) {
+    if (effect.around_plant) {
+      continue;
+    }
     const bool at_port =
         wires.contains(effect.edge) ||
         std::ranges::any_of(effect.same_edges, [&](const std::string& same) { return wires.contains(same); });

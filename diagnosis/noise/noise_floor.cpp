@@ -50,8 +50,8 @@ double flicker_of(const Signal& signal) {
   if (signal.size() < fewest) {
     return 0.0;
   }
-  const auto [low, high] = std::ranges::minmax(signal);
-  const auto if_below = [&](double share, double size) { return size < share * (high - low) ? size : 0.0; };
+  const auto ends = std::ranges::minmax(signal);
+  const auto if_below = [&](double share, double size) { return size < share * (ends.max - ends.min) ? size : 0.0; };
   return std::max(deviations * if_below(small, noise_by_differences(signal)),
                   if_below(fine, 1.001 * smallest_step(signal)));
 }

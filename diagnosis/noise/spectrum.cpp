@@ -322,8 +322,8 @@ std::vector<double> strongest_periods(const Eigen::VectorXd& residuals, const st
   if (size < 32) {
     return {};
   }
-  const auto [low, high] = std::ranges::minmax(places);
-  const double range = high - low;
+  const auto ends = std::ranges::minmax(places);
+  const double range = ends.max - ends.min;
   if (!(range > 0.0)) {
     return {};
   }
@@ -338,7 +338,7 @@ std::vector<double> strongest_periods(const Eigen::VectorXd& residuals, const st
     std::array<Complex, count> turns;
     std::array<Complex, count> terms;
     for (std::size_t i = 0; i < count; ++i, next += stride) {
-      const double quarter = 0.5 * std::numbers::pi * (places[next] - low) / range;
+      const double quarter = 0.5 * std::numbers::pi * (places[next] - ends.min) / range;
       turns[i] = std::polar(1.0, quarter);
       terms[i] = residuals[static_cast<Eigen::Index>(next)] * std::polar(1.0, first * quarter);
     }

@@ -189,6 +189,7 @@ std::string verdict_json(const Diagnosis& found) {
                        {"same_edges", effect.same_edges},
                        {"drivers", effect.drivers},
                        {"share", number_or_null<Json>(effect.share)},
+                       {"around_plant", effect.around_plant},
                        {"invertible", effect.inverse == Inverse::Exact},
                        {"parameters", parameters_of(effect.parameters)},
                        {"settings", settings_of(effect.settings)}});

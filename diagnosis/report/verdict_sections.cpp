@@ -74,8 +74,9 @@ std::string parameter_table(const EffectFinding& effect) {
 std::string effect_card(const EffectFinding& effect, const Diagnosis& diagnosis) {
   std::string html = fmt::format(
       "<article class=\"effect\"><h3>{} <span class=\"at\">on {}</span></h3>\n<p><strong>{}</strong> of the gap "
-      "that calibration leaves; {}.</p>\n",
-      escaped(words_of(effect.id)), escaped(effect.edge), percent(effect.share), inverse_of(effect.inverse));
+      "that calibration leaves{}; {}.</p>\n",
+      escaped(words_of(effect.id)), escaped(effect.edge), percent(effect.share),
+      effect.around_plant ? " at the outputs, in the loop around the plant" : "", inverse_of(effect.inverse));
   const auto list = [](const std::vector<std::string>& names) {
     return escaped(fmt::format("{}", fmt::join(names, ", ")));
   };

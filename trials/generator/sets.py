@@ -102,7 +102,7 @@ def make_set(seed: str, specifications: list[Specification], cases: Path, key: P
         with contextlib.suppress(OSError):
             cases.rmdir()  # what was begun here and holds nothing
         raise
-    missing = [i for i, name in enumerate(names) if not (labels / f"{name}.json").exists()]
+    missing = [i for i, name in enumerate(names) if not (labels / f"{name}.json").exists() or not (cases / name).is_dir()]
     progress = Progress("generate", len(names), len(names) - len(missing), quiet)
     with ProcessPoolExecutor(jobs, initializer=finish_what_is_begun) as pool:
         futures = [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import signal
@@ -79,6 +80,22 @@ class Generate(unittest.TestCase):
             self.assertEqual(subprocess.run(small, capture_output=True, check=False).returncode, 0)
             self.assertEqual(key.read_bytes(), made)
             self.assertEqual(len(list((Path(folder) / "cases").iterdir())), 2)
+
+    def test_an_interrupted_set_whose_cases_are_gone_is_made_whole(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            key, cases, labels = Path(folder) / "key.json", Path(folder) / "cases", Path(folder) / "key.labels"
+            small = self.generate(folder, "--stratum", "none=2", "--length", "0.2")
+            self.assertEqual(subprocess.run(small, capture_output=True, check=False).returncode, 0)
+            made = json.loads(key.read_text())
+            key.unlink()  # as one that was interrupted leaves it
+            labels.mkdir()
+            (labels / "plan.sha256").write_text(made["plan"])
+            for name, label in made["cases"].items():
+                (labels / f"{name}.json").write_text(json.dumps(label))
+            shutil.rmtree(cases)
+            self.assertEqual(subprocess.run(small, capture_output=True, check=False).returncode, 0)
+            self.assertEqual({one.name for one in cases.iterdir()}, set(made["cases"]))
+            self.assertEqual(json.loads(key.read_text()), made)
 
     def test_no_open_key_is_laid_beside_a_sealed_one(self) -> None:
         with tempfile.TemporaryDirectory() as folder:

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <bit>
 #include <cfenv>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <random>
@@ -129,6 +130,9 @@ RecordedRun every_run(const EveryDiagram& diagram, const Program& program) {
     if (no_number || std::fetestexcept(FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW) != 0) {
       run.first_exception = std::min(run.first_exception, k);
     }
+    if (std::ranges::any_of(row, [](double x) { return std::abs(x) > 1e20; })) {
+      run.first_large = std::min(run.first_large, k);
+    }
     for (std::size_t i = 0; i < diagram.program.graph.outputs.size(); ++i) {
       run.outputs.push_back(static_cast<double>(machine.output(i)));
     }
@@ -153,11 +157,14 @@ std::string every_rows(const EveryDiagram& diagram, std::size_t last) {
   return text;
 }
 
-/// A text that was generated, as a diagram, against the interpreter: up to the step in which a guard may act.
+/// A text that was generated, as a diagram, against the interpreter: up to the step in which a guard may act, or what
+/// stands for infinity meets a signal of its size.
 void hold_text(const EveryDiagram& diagram, const std::string& text, const RecordedRun& wanted, std::size_t& steps) {
   const std::size_t width = diagram.program.graph.outputs.size();
   const bool folded = std::ranges::any_of(diagram.program.graph.literals, [](double x) { return std::isnan(x); });
-  const std::size_t safe = folded ? 0 : std::min(wanted.first_exception, every_steps);
+  const bool has_largest = text.find("stands for infinity") != std::string::npos;
+  const std::size_t finite = std::min(wanted.first_exception, has_largest ? wanted.first_large : every_steps);
+  const std::size_t safe = folded ? 0 : std::min(finite, every_steps);
   const Program again = compile_text(text, {.top = diagram.name()});
   const RecordedRun got = every_run_of(diagram, again);
   for (std::size_t i = 0; i < safe * width; ++i) {

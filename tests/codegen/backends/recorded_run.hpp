@@ -23,6 +23,9 @@ struct RecordedRun {
   std::vector<double> outputs{};
   /// The first step in which the interpreter divided by 0, left the range of numbers, or met what is not a number.
   std::size_t first_exception = std::numeric_limits<std::size_t>::max();
+  /// The first step with an input so large that 3.4E38, which stands for infinity in the portable dialect, is not
+  /// infinite beside it: what is divided by it shows in the last digits.
+  std::size_t first_large = std::numeric_limits<std::size_t>::max();
 
   [[nodiscard]] std::size_t steps() const { return inputs.size() / columns; }
 };

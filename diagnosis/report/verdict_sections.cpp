@@ -147,10 +147,15 @@ std::string closed_text(const GapFinding& gap) {
 }
 
 std::string next_text(const GapFinding& gap) {
-  return gap.next ? fmt::format(" On a further record it will be <strong>{}</strong>, with 95 % between {} and {}.",
-                                escaped(quantity(gap.next->rms, gap.unit)), escaped(quantity(gap.next->low, gap.unit)),
-                                escaped(quantity(gap.next->high, gap.unit)))
-                  : std::string();
+  if (!gap.next) {
+    return {};
+  }
+  return fmt::format(
+      " On a further record whose inputs stay where these were it will be <strong>{}</strong>, with 95 % between {} "
+      "and "
+      "{}.",
+      escaped(quantity(gap.next->rms, gap.unit)), escaped(quantity(gap.next->low, gap.unit)),
+      escaped(quantity(gap.next->high, gap.unit)));
 }
 
 std::string gap_table(const std::vector<GapFinding>& gaps) {

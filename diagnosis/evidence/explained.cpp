@@ -200,7 +200,7 @@ Explanation begun(const Task& task, const Beginning& start, const Explanation& c
 
 /// With the known parameters that were found with the set or, where a run of the whole diagram is nearer with these,
 /// as calibrated: what goes with a set is known to first order.
-Beginning nearer(const Task& task, Beginning start, const Explanation& calibrated) {
+Beginning nearer(const Task& task, const Beginning& start, const Explanation& calibrated) {
   Beginning other = start;
   other.x.head(std::ssize(task.known)) = calibrated.fit.x.head(std::ssize(task.known));
   const auto cost = [&](const Beginning& one) {
@@ -251,7 +251,7 @@ Explained explained(const Task& task, const std::string& top, const SetFinding& 
     return {};
   }
   if (!options.is_open_loop) {  // there the loop hides which one is nearer
-    start = nearer(task, std::move(start), calibrated);
+    start = nearer(task, start, calibrated);
   }
   // A friction that lets go within a step has no derivative that would lead a fit: softer ones are tried, too.
   Explanation best{};

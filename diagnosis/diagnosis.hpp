@@ -48,8 +48,9 @@ struct EffectFinding {
   std::vector<std::string> same_edges{};  ///< edges that this record cannot tell from it
   std::vector<std::string> drivers{};     ///< signals that drive it, besides that of its edge
   double share = 0.0;                     ///< of the gap that calibration leaves, with the glitches in it
-  bool around_plant = false;              ///< in the loop around a plant that was weighed alone: the gap is that at the
-                                          ///< outputs, while the others' is what the plant lacks
+  /// In the loop around a plant that was weighed alone: its share is of the gap at the outputs, and no part of what the
+  /// plant lacks, as the others' are.
+  bool around_plant = false;
   Inverse inverse = Inverse::None;
   std::vector<ParameterFinding> parameters{};
   std::vector<SettingFinding> settings{};

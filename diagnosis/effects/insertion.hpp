@@ -30,8 +30,8 @@ struct Insertion {
   std::string input = "XIN";
   std::string output = "XOUT";
   std::vector<std::pair<std::string, std::string>> wires{};  ///< further pins, and the text that drives each
-  std::vector<Helper> helpers{};  ///< that are put there too, for these to read
-  std::string new_input{};        ///< an LREAL input that the block gets, with the default 0; empty: none
+  std::vector<Helper> helpers{};                             ///< that are put there too, for these to read
+  std::string new_input{};  ///< an LREAL input that the block gets, with the default 0; empty: none
 };
 
 [[nodiscard]] std::string with_effect(const language::SourceFile& source, const Edge& edge, const Insertion& insertion);

@@ -191,7 +191,7 @@ Explanation begun(const Task& task, const Beginning& start, const Explanation& c
   }
   x.conservativeResize(model.unknowns());
   x.tail(model.unknowns() - start.x.size()) = calibrated.fit.x.tail(model.unknowns() - start.x.size());
-  if (!model.residuals(x, result.fit.residuals, &result.fit.jacobian)) {
+  if (!model.residuals(x, result.fit.residuals)) {
     return {};
   }
   result.fit.cost = cost_of(model, x, result.fit.residuals, nullptr);
@@ -223,12 +223,14 @@ Explanation fitted_from(const Task& task, Explanation one) {
 /// The set with one effect more, wherever that one closes most: of those whose costs are as good, within `as_much`, the
 /// simplest. Evidence of a plant that was taken out of its loop says nothing of the rest of the loop. A sample too many
 /// there outweighs all that the plant lacks, and a fit without it bends the plant to make up for it.
-Explanation beside_the_plant(const Task& task, const std::string& top, const Explanation& begun,
-                             const Explanation& calibrated, double as_much, const ExplainOptions& options) {
+Explanation beside_the_plant(const Task& task, const std::string& top, Explanation begun, const Explanation& calibrated,
+                             double as_much, const ExplainOptions& options) {
   constexpr std::size_t fitted = 6;
   if (!std::isfinite(begun.fit.cost)) {
     return {};
   }
+  Model model(task, *begun.variant.program, begun.variant.further);
+  (void)model.residuals(begun.fit.x, begun.fit.residuals, &begun.fit.jacobian);  // finite before
   const Footing footing{.calibrated = calibrated, .nominal = calibrated};
   const SearchOptions asked{.candidates = {.effects = options.effects, .columns = options.columns},
                             .threads = options.threads};

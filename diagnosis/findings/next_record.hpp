@@ -4,8 +4,8 @@
 //
 // The next record is taken for one more block: another day may differ from this one as much as its parts differ among
 // themselves. It is the prediction interval of a normal sample (G. J. Hahn, W. Q. Meeker, Statistical Intervals, 1991).
-// A block counts with its noise at least: where a machine rested less is left, and ln RMS of it would say nothing of one
-// that moves.
+// A block counts with its noise at least: where a machine rested less is left, and ln RMS of it would say nothing of
+// one that moves.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,8 @@
 
 namespace hysteron::diagnosis {
 
-/// `scale` is what the residuals are in units of, `noise` their deviation by noise alone in those. Nothing of less than three blocks, or of residuals that are 0.
+/// `scale` is what the residuals are in units of, `noise` their deviation by noise alone in those. Nothing of less than
+/// three blocks, or of residuals that are 0.
 [[nodiscard]] std::optional<NextRecord> next_record(const HeldOut& unseen, double noise, double scale);
 
 }  // namespace hysteron::diagnosis

@@ -14,9 +14,8 @@ constexpr std::string_view sheet = R"css(
 .confidence svg { width: 9rem; height: .9rem; margin: 0 0 0 .6rem; vertical-align: -2px; }
 .cards { display: grid; grid-template-columns: repeat(auto-fit, minmax(330px, 1fr)); gap: 1rem; }
 article.effect { background: var(--card); border: 1px solid var(--line); border-top: 4px solid var(--after);
-  border-radius: .4rem; padding: .5rem 1rem .8rem; }
+  border-radius: .4rem; padding: .5rem 1rem .8rem; overflow-x: auto; }
 article.effect table { font-size: .9em; }
-article.effect { overflow-x: auto; }
 article.effect h3 { margin: .2rem 0; }
 article.effect .at { font-weight: 400; color: var(--soft); }
 

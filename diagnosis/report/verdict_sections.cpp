@@ -152,8 +152,7 @@ std::string next_text(const GapFinding& gap) {
   }
   return fmt::format(
       " On a further record whose inputs stay where these were it will be <strong>{}</strong>, with 95 % between {} "
-      "and "
-      "{}.",
+      "and {}.",
       escaped(quantity(gap.next->rms, gap.unit)), escaped(quantity(gap.next->low, gap.unit)),
       escaped(quantity(gap.next->high, gap.unit)));
 }

@@ -17,7 +17,7 @@
 #include "blocks/rate_limit.hpp"
 #include "blocks/sample_and_hold.hpp"
 #include "blocks/switch.hpp"
-#include "tests/blocks/contract.hpp"
+#include "tests/blocks/neutral_run.hpp"
 #include "tests/blocks/random_io.hpp"
 #include "tests/blocks/stepper.hpp"
 
@@ -40,18 +40,10 @@ std::vector<double> awkward_signal() {
 TEST(Neutral, PassesItsInputBitForBit) {
   for (const About& about : {Limit::about, DeadBand::about, RateLimit::about, Quantizer::about, Backlash::about}) {
     SCOPED_TRACE(std::string(about.name));
-    const ContractBlock& block = contract_block(about.name);
-    auto params = preset_numbers(block.params);
-    ASSERT_GT(neutralise(block.params, params), 0);
-    const auto run = block.in_double(params, 5e-5);
-    const std::size_t xin = real_place(block.in, "XIN").value();
-    const std::size_t xout = real_place(block.out, "XOUT").value();
-    std::vector<double> in(places(block.in).back());
-    std::vector<double> out(places(block.out).back());
+    NeutralRun run(about.name, 5e-5);
+    const std::vector<double> in(places(run.inputs()).back());
     for (const double x : awkward_signal()) {
-      in[xin] = x;
-      run->step(in, out);
-      EXPECT_TRUE(same_bits(out[xout], x)) << x;
+      EXPECT_TRUE(same_bits(run.step(in, x), x)) << x;
     }
   }
 }

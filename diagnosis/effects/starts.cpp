@@ -255,6 +255,15 @@ std::vector<Candidate> other_guesses(const Candidate& candidate, const Extent& i
   return others;
 }
 
+Grid bounded(const EffectParameter& parameter, double sample_time, double duration) {
+  Grid grid{.lowest = parameter.field.effect_minimum, .highest = parameter.field.effect_maximum};
+  if (parameter.role == Role::Duration && !parameter.strength && parameter.field.preset > 0.0) {
+    grid.lowest = 4.0 * sample_time;                  // what is over sooner is a gain, an offset or a lag
+    grid.highest = std::min(grid.highest, duration);  // a record shows no settling that takes longer
+  }
+  return grid;
+}
+
 Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* auxiliary, const Hints& hints,
                const std::vector<double>& periods) {
   Grids grids;
@@ -264,12 +273,7 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
     if (parameter.role == Role::Reference) {
       setting = reference(parameter, input, auxiliary, candidate);
     } else {
-      grid.lowest = parameter.field.effect_minimum;
-      grid.highest = parameter.field.effect_maximum;
-      if (parameter.role == Role::Duration && !parameter.strength && parameter.field.preset > 0.0) {
-        grid.lowest = 4.0 * hints.sample_time;                  // what is over sooner is a gain, an offset or a lag
-        grid.highest = std::min(grid.highest, hints.duration);  // a record shows no settling that takes longer
-      }
+      grid = bounded(parameter, hints.sample_time, hints.duration);
       if (parameter.role == Role::Period) {
         // Twice at least, or it is no period; and not in peaks alone, or it is a limit with a bend.
         const Extent& over = auxiliary == nullptr ? input : *auxiliary;

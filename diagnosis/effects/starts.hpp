@@ -37,6 +37,9 @@ struct Grids {
   std::vector<double> settings{};  ///< of references, NaN elsewhere
 };
 
+/// No values yet, and the range in which a record of that many seconds shows what a parameter is.
+[[nodiscard]] Grid bounded(const EffectParameter& parameter, double sample_time, double duration);
+
 /// `input` is the signal that the effect changes, `auxiliary` what drives its first further input.
 [[nodiscard]] Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* auxiliary,
                              const Hints& hints, const std::vector<double>& periods);

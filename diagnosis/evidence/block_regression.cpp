@@ -3,8 +3,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <map>
+#include <string_view>
 #include <utility>
+
+#include "support/numbers.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -47,8 +50,9 @@ BlockRegression::Terms BlockRegression::terms_of(std::span<const Law* const> law
       terms.slacks.middleCols(at, law->slacks.cols()) = law->slacks;
     }
     for (const Law::Term& term : law->terms) {
-      terms.low[at] = bounded ? term.lowest : -std::numeric_limits<double>::infinity();
-      terms.high[at] = bounded ? term.highest : std::numeric_limits<double>::infinity();
+      const bool held = bounded && !term.either_way;
+      terms.low[at] = held ? term.lowest : -infinity;
+      terms.high[at] = held ? term.highest : infinity;
       ++at;
     }
   }
@@ -104,6 +108,26 @@ VectorXd solved(const MatrixXd& gram, const VectorXd& diagonal, const VectorXd& 
 
 VectorXd ridge_of(const MatrixXd& gram) {
   return (gram.diagonal() * ridge).cwiseMax(1e-300);
+}
+
+/// Each share within its bounds; what may be turned round, all of a family on an edge alike.
+bool are_within_bounds(std::span<const Law* const> laws, const VectorXd& shares) {
+  std::map<std::pair<std::string_view, std::string_view>, std::pair<bool, bool>> ways;  // by family and edge
+  Index at = 0;
+  for (const Law* law : laws) {
+    for (const Law::Term& term : law->terms) {
+      const double share = shares[at++];
+      if (!term.either_way && !term.holds(share)) {
+        return false;
+      }
+      if (term.either_way) {
+        auto& [forwards, backwards] = ways.try_emplace({law->family, law->edge}, true, true).first->second;
+        forwards = forwards && term.holds(share);
+        backwards = backwards && term.holds(-share);
+      }
+    }
+  }
+  return std::ranges::all_of(ways, [](const auto& one) { return one.second.first || one.second.second; });
 }
 
 /// What is left beyond a slack.
@@ -173,8 +197,7 @@ BlockRegression::Score BlockRegression::with(std::span<const Law* const> laws, b
   }
   score.known = all.head(fixed);
   score.shares = all.tail(own);
-  score.allowed =
-      (score.shares.array() >= terms.low.array()).all() && (score.shares.array() <= terms.high.array()).all();
+  score.allowed = !bounded || are_within_bounds(laws, score.shares);
   if (!score.allowed) {
     return score;
   }

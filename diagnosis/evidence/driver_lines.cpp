@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <numeric>
 
@@ -9,6 +10,23 @@
 
 namespace hysteron::diagnosis {
 namespace {
+
+/// Σ (x − mean)·exp(i·angle·k). The turns follow from each other, from a new one every few dozen: rounding adds up to
+/// some 1e-14.
+std::complex<double> turned(const Signal& values, double mean, double angle) {
+  constexpr std::size_t from_each_other = 64;
+  const std::complex<double> step = std::polar(1.0, angle);
+  std::complex<double> sum = 0.0;
+  for (std::size_t begin = 0; begin < values.size(); begin += from_each_other) {
+    std::complex<double> turn = std::polar(1.0, angle * static_cast<double>(begin));
+    for (std::size_t k = begin; k < std::min(values.size(), begin + from_each_other); ++k) {
+      sum += (values[k] - mean) * turn;
+      turn = {turn.real() * step.real() - turn.imag() * step.imag(),
+              turn.real() * step.imag() + turn.imag() * step.real()};
+    }
+  }
+  return sum;
+}
 
 /// Of a signal's energy about its mean, what a sine of that frequency explains, within the resolution of the record.
 double share_of_line(const RecordSignals& values, double frequency, double sample_time) {
@@ -22,13 +40,7 @@ double share_of_line(const RecordSignals& values, double frequency, double sampl
     }
     for (const double off : {-0.5, 0.0, 0.5}) {
       const double angle = 2.0 * std::numbers::pi * (frequency + off / (n * sample_time)) * sample_time;
-      double sine = 0.0;
-      double cosine = 0.0;
-      for (std::size_t k = 0; k < one.size(); ++k) {
-        sine += (one[k] - mean) * std::sin(angle * static_cast<double>(k));
-        cosine += (one[k] - mean) * std::cos(angle * static_cast<double>(k));
-      }
-      best = std::max(best, whole > 0.0 ? 2.0 * (sine * sine + cosine * cosine) / (n * whole) : 0.0);
+      best = std::max(best, whole > 0.0 ? 2.0 * std::norm(turned(one, mean, angle)) / (n * whole) : 0.0);
     }
   }
   return best;

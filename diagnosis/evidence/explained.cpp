@@ -8,6 +8,7 @@
 #include "diagnosis/effects/starts.hpp"
 #include "diagnosis/evidence/output_space.hpp"
 #include "diagnosis/model/refusal.hpp"
+#include "diagnosis/model/task.hpp"
 #include "diagnosis/policy.hpp"
 #include "diagnosis/search/expansion.hpp"
 #include "diagnosis/search/stretches.hpp"
@@ -78,13 +79,18 @@ bool is_one_sided(const EffectParameter& parameter) {
 }
 
 /// Whether a law drives where its block resists. On a force that a motion asks for, in inverse dynamics or in the
-/// branch of a sum that is taken away, a friction is one of the other sign: its velocity counts backwards there.
+/// branch of a sum that is taken away, a friction is one of the other sign: its velocity counts backwards there. Its
+/// strengths have units of their own: the one that is surest, by its deviations from 0, tells.
 bool is_backwards(const LawFinding& law, const std::vector<EffectParameter>& parameters) {
-  double sum = 0.0;
-  for (const EffectParameter& parameter : parameters) {
-    sum += is_one_sided(parameter) ? value_of(law, parameter, 0.0) : 0.0;
+  const LawValue* surest = nullptr;
+  for (const LawValue& one : law.values) {
+    const auto parameter = std::ranges::find(parameters, one.name, &EffectParameter::name);
+    if (parameter != parameters.end() && is_one_sided(*parameter) &&
+        (surest == nullptr || std::abs(one.value) * surest->error > std::abs(surest->value) * one.error)) {
+      surest = &one;
+    }
   }
-  return sum < 0.0;
+  return surest != nullptr && surest->value < 0.0;
 }
 
 /// The law's block in the diagram.
@@ -166,9 +172,11 @@ Beginning start_of(const Task& task, const std::string& top, const SetFinding& s
         own.settings.emplace_back(own.paths[j], value);
         continue;
       }
-      variant.further.push_back(unknown_of(parameter, own.paths[j], {.values = {value}}));
+      Grid grid = bounded(parameter, task.records.front().sample_time(), longest_duration(task));
+      grid.values = {value};
+      const Unknown& unknown = variant.further.emplace_back(unknown_of(parameter, own.paths[j], grid));
       result.x.conservativeResize(result.x.size() + 1);
-      result.x[result.x.size() - 1] = value;
+      result.x[result.x.size() - 1] = std::clamp(value, unknown.lower, unknown.upper);
       if (parameter.is_travel()) {
         result.travels.push_back(result.x.size() - 1);
       }

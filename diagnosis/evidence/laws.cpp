@@ -133,8 +133,9 @@ class Settings {
                      .measure = parameter(j).unit,
                      .unit = step,
                      .neutral = field.neutral,
-                     .lowest = both_ways_ ? -std::numeric_limits<double>::infinity() : std::min(a, b),
-                     .highest = both_ways_ ? std::numeric_limits<double>::infinity() : std::max(a, b)};
+                     .lowest = std::min(a, b),
+                     .highest = std::max(a, b),
+                     .either_way = both_ways_};
       std::erase_if(result.law.shape, [&](const auto& one) { return one.first == term.strength; });
       result.law.terms.push_back(std::move(term));
       result.signals.push_back(std::move(once));
@@ -299,6 +300,7 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
   const std::size_t points = std::clamp(static_cast<std::size_t>(strengths_by_samples / static_cast<double>(samples)),
                                         fewest_points, most_points);
   std::vector<std::vector<Law>> found(jobs.size());
+  StrongestPeriods strongest(fitted.fit.residuals, periods_tried);
   in_parallel(jobs.size(), options.threads, [&](std::size_t i) {
     const Job& job = jobs[i];
     const Space::Place& place = places[job.place];
@@ -332,7 +334,7 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
     for (const Candidate& guess : guesses) {
       std::vector<double> periods;
       if (guess.own().has(Role::Period)) {
-        periods = strongest_periods(fitted.fit.residuals, signals.empty() ? input : *signals.front(), 8);
+        periods = strongest.over(signals.empty() ? input : *signals.front());
       }
       const Grids grids = with_finer_durations(
           guess.own(),

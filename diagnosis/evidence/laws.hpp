@@ -31,6 +31,11 @@ struct Law {
     double neutral = 0.0;
     double lowest = 0.0;  ///< of the share
     double highest = 0.0;
+    /// Or of the share turned round, together with those of its family on the edge: what resists a motion is a force of
+    /// the other sign where the motion is imposed, and two of one family do not act against each other.
+    bool either_way = false;
+
+    [[nodiscard]] bool holds(double share) const { return share >= lowest && share <= highest; }
   };
   std::string effect{};
   std::string family{};

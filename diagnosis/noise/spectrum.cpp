@@ -369,4 +369,16 @@ std::vector<double> strongest_periods(const Eigen::VectorXd& residuals, const st
   return places_of(std::move(peaks), count);
 }
 
+const std::vector<double>& StrongestPeriods::over(const Signals& signal) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = found_.find(&signal); found != found_.end()) {
+      return found->second;
+    }
+  }
+  std::vector<double> periods = strongest_periods(residuals_, signal, count_);  // others ask meanwhile
+  const std::lock_guard lock(mutex_);
+  return found_.emplace(&signal, std::move(periods)).first->second;
+}
+
 }  // namespace hysteron::diagnosis

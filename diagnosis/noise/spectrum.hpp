@@ -2,6 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <map>
+#include <mutex>
 #include <vector>
 
 namespace hysteron::diagnosis {
@@ -62,5 +65,28 @@ class Periodogram {
 /// squares of sine and cosine on a fine grid (Lomb 1976). `signal` by record, in the order of the residual's rows.
 [[nodiscard]] std::vector<double> strongest_periods(const Eigen::VectorXd& residuals,
                                                     const std::vector<std::vector<double>>& signal, std::size_t count);
+
+/// So many periods over a signal are tried for an effect.
+inline constexpr std::size_t periods_tried = 8;
+
+/// The same of one residual over many signals, those of equal ones found once. Threads may ask side by side. The
+/// residual and the signals have to outlive it.
+class StrongestPeriods {
+ public:
+  using Signals = std::vector<std::vector<double>>;
+  StrongestPeriods(const Eigen::VectorXd& residuals, std::size_t count) : residuals_(residuals), count_(count) {}
+
+  [[nodiscard]] const std::vector<double>& over(const Signals& signal);
+
+ private:
+  struct ByValue {
+    bool operator()(const Signals* a, const Signals* b) const { return a != b && *a < *b; }
+  };
+
+  const Eigen::VectorXd& residuals_;
+  std::size_t count_;
+  std::mutex mutex_{};
+  std::map<const Signals*, std::vector<double>, ByValue> found_{};
+};
 
 }  // namespace hysteron::diagnosis

@@ -103,6 +103,7 @@ std::vector<Screened> Expansion::screen(const Explanation& from, const Wanted& w
   // Lines and periods show best where a calibration has taken off what is none.
   const VectorXd& shown = from.variant.effects.empty() ? footing_.calibrated.fit.residuals : from.fit.residuals;
   const Hints hints = hints_of(task_, shown);
+  StrongestPeriods strongest(shown, periods_tried);
   Model model(task_, *from.variant.program, from.variant.further);
   const Background background(model, from.fit);
 
@@ -116,8 +117,7 @@ std::vector<Screened> Expansion::screen(const Explanation& from, const Wanted& w
     }
     std::vector<double> periods;
     if (candidates[i].own().has(Role::Period) || candidates[i].own().has(Role::Quantum)) {
-      periods =
-          strongest_periods(shown, signals->auxiliary_values ? *signals->auxiliary_values : signals->input_values, 8);
+      periods = strongest.over(signals->auxiliary_values ? *signals->auxiliary_values : signals->input_values);
     }
     grids[i] =
         grids_of(candidates[i], signals->input, signals->auxiliary ? &*signals->auxiliary : nullptr, hints, periods);

@@ -57,6 +57,44 @@ TEST(BlockRegression, TheHeldOutEnergyIsThatOfAFitWithoutTheBlock) {
   }
 }
 
+/// Where a motion is imposed a friction may be turned round. Two of one family that act against each other make any
+/// shape of their difference, with strengths that mean nothing.
+TEST(BlockRegression, TwoOfAFamilyOnAnEdgeDoNotActAgainstEachOther) {
+  constexpr std::size_t samples = 90;
+  const Task task = one_output(samples);
+  const Blocks blocks(task, 1, 6, 1000);
+  test::Noise noise(12);
+  const auto column = [&] {
+    const std::vector<double> values = noise.white(samples, 1.0);
+    return VectorXd(Eigen::Map<const VectorXd>(values.data(), samples));
+  };
+  Law first = free_law(column());
+  first.family = "dry_friction";
+  first.edge = "DRIVE.XOUT";
+  first.terms.front().lowest = 0.0;
+  first.terms.front().either_way = true;
+  Law second = first;
+  second.responses = column();
+  const VectorXd error = 0.1 * column();
+  const auto is_allowed = [&](double a, double b) {
+    const Law* const laws[] = {&first, &second};
+    const VectorXd residuals = error - a * first.responses.col(0) - b * second.responses.col(0);
+    return BlockRegression(blocks, residuals, MatrixXd(samples, 0)).with(laws).allowed;
+  };
+  EXPECT_TRUE(is_allowed(3.0, 2.5));
+  EXPECT_TRUE(is_allowed(-3.0, -2.5));
+  EXPECT_FALSE(is_allowed(3.0, -2.5));
+  EXPECT_FALSE(is_allowed(-3.0, 2.5));
+  second.edge = "LOAD.XOUT";
+  EXPECT_TRUE(is_allowed(3.0, -2.5));
+  second.edge = first.edge;
+  second.family = "viscous_friction";
+  EXPECT_TRUE(is_allowed(3.0, -2.5));
+  first.terms.front().either_way = second.terms.front().either_way = false;
+  EXPECT_TRUE(is_allowed(3.0, 2.5));
+  EXPECT_FALSE(is_allowed(3.0, -2.5));
+}
+
 /// A force that is missing where a machine with dry friction of level 2 moves, and where it rests under a drive that
 /// rises and falls between −2 and 2: what holds it there is no function of its speed.
 struct SlidesAndRests {

@@ -95,6 +95,34 @@ TEST(Explained, InInverseDynamicsAFrictionIsAddedAndItsVelocityCountsBackwards) 
   EXPECT_NEAR(value_of(found, one, "DAMP.K"), 5.0, 0.3);
 }
 
+/// The machine's filters are ten times as fast as those of the diagram: a relaxation that settles within a sample would
+/// make up for them, with a gain that only a mass fifty times as large can take.
+TEST(Explained, ATimeStaysWithinWhatARecordShowsAsInASearch) {
+  std::vector<double> motion;
+  for (int k = 0; k < 2000; ++k) {
+    motion.push_back(0.1 * std::sin(0.005 * k * 2.9) + 0.03 * std::sin(0.005 * k * 37.3));
+  }
+  std::string machine = inverse_dynamics();
+  for (std::size_t at = 0; (at = machine.find("T1 := 0.02", at)) != std::string::npos;) {
+    machine.replace(at, 10, "T1 := 0.002");
+  }
+  const Given found = given(inverse_dynamics(), "[fit.MASS]\nK = {min = 0.0}\n[fit.DAMP]\nK = {min = 0.0}\n",
+                            test::measured(test::program_of(machine), test::record_of("Y", motion), noise), {noise});
+  const SetFinding set{
+      .space = "outputs",
+      .laws = {{.effect = "relaxation",
+                .family = "linear_dynamics",
+                .edge = "ACC.XOUT",
+                .values = {{.name = "GAIN", .value = -0.8, .error = 0.01, .unit = "1"}, {.name = "T1", .value = 0.03}},
+                .closed = 0.5}},
+      .closed = 0.5,
+      .known = {8.0, 5.0}};
+  const Explained result = explained_by(found, "PUSH", set);
+  ASSERT_TRUE(result.explanation);
+  EXPECT_GE(value_of(found, *result.explanation, "RELAXATION.T1"), 4.0 * 0.005);
+  EXPECT_LT(value_of(found, *result.explanation, "MASS.K"), 20.0);
+}
+
 TEST(Explained, WhatResistsWhereItsBlockDoesIsDrivenAsItIs) {
   const std::string machine =
       test::axis({"HY_COULOMB_FRICTION := (LEVEL := 0.4, PRESLIDE := 0.001)", "MASS.XOUT", ", V := LATE.XOUT"});

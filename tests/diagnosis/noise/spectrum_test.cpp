@@ -47,7 +47,8 @@ TEST(StrongestLines, ComeStrongestFirst) {
 
 TEST(StrongestLines, AnOffsetIsNone) {
   const auto lines =
-      Periodogram(Eigen::VectorXd::Constant(spectrum_samples, 100.0) + sine(20.0, 0.1), spectrum_sample_time).strongest_lines(1);
+      Periodogram(Eigen::VectorXd::Constant(spectrum_samples, 100.0) + sine(20.0, 0.1), spectrum_sample_time)
+          .strongest_lines(1);
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_NEAR(lines[0], 20.0, 0.1 * bin);
 }
@@ -180,6 +181,26 @@ TEST(StepFromZero, IsTheOneWhoseMultiplesTheValuesAre) {
   EXPECT_NEAR(step_from_zero(far, step), step, 1e-6);
   std::ranges::for_each(far, [](double& value) { value += 0.4 * step; });
   EXPECT_EQ(step_from_zero(far, step), step) << "about 0 none gives these values";
+}
+
+TEST(StrongestPeriods, OfEqualSignalsAreFoundOnce) {
+  const Eigen::VectorXd residual = white_noise(1.0);
+  const auto saw = [](double period) {
+    std::vector<double> values;
+    for (int k = 0; k < spectrum_samples; ++k) {
+      values.push_back(std::fmod(k, period));
+    }
+    return StrongestPeriods::Signals{values};
+  };
+  const StrongestPeriods::Signals one = saw(70.0);
+  const StrongestPeriods::Signals same = saw(70.0);
+  const StrongestPeriods::Signals other = saw(110.0);
+  StrongestPeriods strongest(residual, 4);
+  const std::vector<double>& found = strongest.over(one);
+  EXPECT_EQ(found, strongest_periods(residual, one, 4));
+  EXPECT_EQ(&strongest.over(same), &found);
+  EXPECT_EQ(strongest.over(other), strongest_periods(residual, other, 4));
+  EXPECT_NE(strongest.over(other), found);
 }
 
 TEST(StrongestPeriods, ASignalThatStandsHasNone) {

@@ -143,7 +143,7 @@ constexpr std::array titles{
     ErrorTitle{error::run_file_syntax, "Run file is not TOML"},
     ErrorTitle{error::run_key_twice, "Key given twice in a run file"},
     ErrorTitle{error::unknown_run_key, "Unknown key in a run file"},
-    ErrorTitle{error::wrong_run_value, "Value of the wrong type in a run file"},
+    ErrorTitle{error::wrong_run_value, "Value of a run file that is wrong or does nothing"},
     ErrorTitle{error::run_value_out_of_range, "Value out of range in a run file"},
     ErrorTitle{error::no_safe_value, "Output without a safe value"},
     ErrorTitle{error::unknown_port_in_run_file, "Input or output that the diagram does not have"},

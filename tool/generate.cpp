@@ -49,7 +49,8 @@ fmu: NAME.fmu, for co-simulation in FMI 3.0 or 2.0, with sources and, where ther
 --proof: NAME.TARGET.proof.json beside the files: schedule, bytes, operations, hashes, the bits beside the interpreter, and
 the command that repeats it. all: each target in a folder of its own, and a table: 2000 steps of random inputs, run in each beside the interpreter.
 With --host: a program that does on another machine what `hysteron serve` does here, with the same registers and bits,
-the sources that it is built from, a systemd unit with the rights that RUN.toml needs, and a README.
+the sources that it is built from, a systemd unit with the rights that RUN.toml needs, what makes a Debian package or a
+container of it, and a README.
 All are written or none. The step has the bits that `hysteron run` shows.
 Exit codes: 0 done; 1 done, but a target of all or of --proof has other bits or could not be run; 2 an error in the diagram, the parameters, the run file or the output folder.
 )";

@@ -91,6 +91,7 @@ void ModbusReader::read_server(TomlReader table, bool over_tls) {
   modbus.port = over_tls ? 802 : modbus.port;
   table.read_whole("port", modbus.port);
   table.read("allow", modbus.allow, R"(["192.168.10.0/24"])");
+  refuse_open_to_all(table, modbus, over_tls);
   table.read_whole("connections", modbus.connections);
   modbus.connections_per_address = std::max<std::size_t>(1, modbus.connections / 4);
   table.read_whole("connections_per_address", modbus.connections_per_address);
@@ -113,6 +114,19 @@ void ModbusReader::read_server(TomlReader table, bool over_tls) {
   table.read("discovery", modbus.has_discovery);
   read_heartbeat(table, modbus);
   config_->modbus = std::move(modbus);
+}
+
+/// The same as the live page asks for: who opens a server to all networks says so.
+void ModbusReader::refuse_open_to_all(const TomlReader& table, const ModbusConfig& modbus, bool over_tls) {
+  const auto bytes = modbus::address_bytes(modbus.listen);
+  const bool is_any = bytes && (bytes == modbus::address_bytes("0.0.0.0") || bytes == modbus::address_bytes("::"));
+  if (is_any && modbus.allow.empty() && !over_tls) {
+    found_->error(
+        error::unusable_listen_address, table.place("listen"),
+        modbus.listen + " is each network of this machine, and whoever reaches one may read and write.",
+        "write which networks are served, as in allow = [\"192.168.10.0/24\"], or add [tls]; for all of them, "
+        "allow = [\"0.0.0.0/0\", \"::/0\"].");
+  }
 }
 
 /// A name with a point in it may be quoted, or not: HYST.C1 = "%ML3" is a table in TOML.

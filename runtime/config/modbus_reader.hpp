@@ -22,6 +22,7 @@ class ModbusReader {
 
  private:
   void read_server(TomlReader table, bool over_tls);
+  void refuse_open_to_all(const TomlReader& table, const ModbusConfig& modbus, bool over_tls);
   void read_heartbeat(TomlReader& table, ModbusConfig& modbus);
   /// `prefix` is what stands before each name, as HYST. in [addresses.HYST].
   void read_addresses(const std::string& prefix, const toml::table& table);

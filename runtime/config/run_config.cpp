@@ -10,6 +10,7 @@
 #include "runtime/config/device_field.hpp"
 #include "runtime/config/device_reader.hpp"
 #include "runtime/config/history_reading.hpp"
+#include "runtime/config/idle_keys.hpp"
 #include "runtime/config/modbus_reader.hpp"
 #include "runtime/config/mqtt_reader.hpp"
 #include "runtime/config/tls_reader.hpp"
@@ -35,15 +36,6 @@ std::vector<std::string> names_of(const std::vector<ProgramSignal>& signals) {
     names.push_back(signal.name);
   }
   return names;
-}
-
-std::optional<std::size_t> index_of(std::string_view name, const std::vector<ProgramSignal>& signals) {
-  for (std::size_t i = 0; i < signals.size(); ++i) {
-    if (equal_ignoring_case(signals[i].name, name)) {
-      return i;
-    }
-  }
-  return std::nullopt;
 }
 
 /// The signal of that name, or the elements of the vector.
@@ -117,6 +109,7 @@ class Reader {
     if (found_.has_errors()) {
       throw InputError(sorted());
     }
+    warn_of_idle_keys(file_, root_, config_, found_);
     config_.warnings = sorted();
     return std::move(config_);
   }
@@ -158,6 +151,10 @@ class Reader {
     config_.task.loop.policy = static_cast<MissedPolicy>(policy);
     table.read_whole("catch_up", config_.task.loop.catch_up);
     table.read_duration("tolerance", config_.task.loop.tolerance, 1, shape_.period);
+    table.read("load", config_.task.most_load);
+    std::size_t overload = 0;
+    table.read_choice("on_overload", overload);
+    config_.task.overload_is_a_fault = overload == 1;
     std::size_t scheduling = 0;
     table.read_choice("scheduling", scheduling);
     constexpr std::array classes{Scheduling::fifo, Scheduling::deadline, Scheduling::other};
@@ -436,59 +433,12 @@ RunConfig parse_run_config(const std::string& file, std::string_view text, const
   return Reader(file, text, shape).read();
 }
 
-std::optional<std::int64_t> parse_duration(std::string_view text) {
-  const auto unit = text.find_first_not_of("0123456789.");
-  if (unit == std::string_view::npos) {
-    return std::nullopt;
-  }
-  const auto number = parse_number(text.substr(0, unit));
-  const auto name = text.substr(unit);
-  const double scale = name == "ns"    ? 1.0
-                       : name == "us"  ? 1e3
-                       : name == "ms"  ? 1e6
-                       : name == "s"   ? 1e9
-                       : name == "min" ? 60e9
-                       : name == "h"   ? 3600e9
-                       : name == "d"   ? 86'400e9
-                                       : 0.0;
-  const double value = number.value * scale;
-  if (number.status != NumberStatus::Finite || scale == 0.0 || value > 1e18 || value != std::round(value)) {
-    return std::nullopt;
-  }
-  return static_cast<std::int64_t>(value);
-}
-
 std::optional<ChangeConfig> change_config_of(const std::string& file, std::string_view text) {
   const toml::table root = parse_toml(file, text, run_file);
   const auto* const table = root["online_change"].as_table();
   const auto* const socket = table == nullptr ? nullptr : table->get("socket");
   const auto path = socket == nullptr ? std::nullopt : socket->value<std::string>();
   return path ? std::optional(ChangeConfig{.socket = *path, .place = place_of(file, socket->source())}) : std::nullopt;
-}
-
-std::optional<TraceTrigger> parse_trigger(std::string_view text, const ProgramShape& shape) {
-  if (equal_ignoring_case(text, "fault")) {
-    return TraceTrigger{};
-  }
-  const auto sign = text.find_first_of("<>");
-  if (sign == std::string_view::npos) {
-    return std::nullopt;
-  }
-  const auto trimmed = [](std::string_view part) {
-    const auto begin = std::min(part.find_first_not_of(' '), part.size());
-    return part.substr(begin, part.find_last_not_of(' ') + 1 - begin);
-  };
-  const auto name = trimmed(text.substr(0, sign));
-  const auto level = parse_number(trimmed(text.substr(sign + 1)));
-  const auto output = index_of(name, shape.outputs);
-  const auto input = index_of(name, shape.inputs);
-  if (level.status != NumberStatus::Finite || (!output && !input)) {
-    return std::nullopt;
-  }
-  return TraceTrigger{.signal = output ? TraceTrigger::Signal::output : TraceTrigger::Signal::input,
-                      .index = output ? *output : *input,
-                      .above = text[sign] == '>',
-                      .level = level.value};
 }
 
 }  // namespace hysteron::runtime

@@ -152,7 +152,7 @@ struct RunConfig {
   Diagnostics warnings{};
 };
 
-/// Reads a run file for a program. Throws InputError with all that is wrong, HY801 to HY810, HY813, HY835, HY836
+/// Reads a run file for a program. Throws InputError with all that is wrong, HY801 to HY810, HY813, HY829, HY835, HY836
 /// and HY860;
 /// `file` stands in places.
 [[nodiscard]] RunConfig parse_run_config(const std::string& file, std::string_view text, const ProgramShape& shape);

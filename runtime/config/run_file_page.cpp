@@ -14,7 +14,7 @@ namespace hysteron::runtime {
 namespace {
 
 std::string kind_text(const RunKey& key) {
-  constexpr std::array<const char*, 6> names{"true or false", "text",         "list of texts",
+  constexpr std::array<const char*, 7> names{"true or false", "text",         "text", "list of texts",
                                              "number",        "whole number", "time"};
   if (key.kind != KeyKind::choice) {
     return names.at(static_cast<std::size_t>(key.kind));

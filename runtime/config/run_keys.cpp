@@ -21,6 +21,7 @@ constexpr std::array<Words, 3> missed_words{"skip", "catch_up", "stop"};
 constexpr std::array<Words, 3> scheduling_words{"fifo", "deadline", "other"};
 constexpr std::array<Words, 3> on_fault_words{"value", "ramp", "hold"};
 constexpr std::array<Words, 2> loss_words{"fault", "keep"};
+constexpr std::array<Words, 2> overload_words{"tell", "fault"};
 constexpr std::array<Words, 2> absence_words{"fault", "go_on"};
 constexpr std::array<Words, 4> area_words{"holding", "input", "coil", "discrete"};
 constexpr std::array<Words, 2> written_area_words{"holding", "coil"};
@@ -77,6 +78,12 @@ constexpr std::array task_keys{
            many,
            {},
            "no more than the period"},
+    RunKey{"load", number, "0.8", "of the time, what the cyclic thread may compute; more is an overload", 1e-3, 1.0},
+    RunKey{.name = "on_overload",
+           .kind = choice,
+           .otherwise = "\"tell\"",
+           .meaning = "what follows an overload: a line on standard error, or a fault for as long as it lasts",
+           .words = overload_words},
     RunKey{.name = "scheduling",
            .kind = choice,
            .otherwise = "\"fifo\"",
@@ -218,7 +225,7 @@ constexpr std::array device_keys{
            .words = absence_words},
 };
 constexpr std::array retain_keys{
-    RunKey{"folder", text, "(required)", "where the state and the parameters are kept"},
+    RunKey{"folder", path, "(required)", "where the state and the parameters are kept"},
     RunKey{"every", time, "\"1s\"", "how often they are written; a whole number counts cycles", 1.0, 24.0 * 3600.0 * s},
     RunKey{.name = "mismatch",
            .kind = choice,
@@ -229,7 +236,7 @@ constexpr std::array retain_keys{
            .words = mismatch_words},
 };
 constexpr std::array trace_keys{
-    RunKey{"file", text, "(required)", "the trace, for replay, tune and diagnose"},
+    RunKey{"file", path, "(required)", "the trace, for replay, tune and diagnose"},
     RunKey{"megabytes", whole, "1024", "what all its files take at most, together", 1.0, 1e9},
     RunKey{"files", whole, "8", "how many there are at most, of earlier runs too: run.trace, run.trace.1, …", 2.0,
            1000.0},
@@ -255,14 +262,14 @@ constexpr std::array trace_keys{
            "`files` at the most"},
 };
 constexpr std::array online_change_keys{
-    RunKey{"socket", text, "(required)",
+    RunKey{"socket", path, "(required)",
            "the file of the socket on which the task of `hysteron serve` takes an online change from its own user; "
            "`hysteron online-change` finds it here"},
     RunKey{"load", number, "0.8", "of the period, what a step of a new version may take; longer, it is refused", 1e-3,
            1.0},
 };
 constexpr std::array history_keys{
-    RunKey{"file", text, "(required)", "the file of the history, of SQLite; `hysteron history` exports it"},
+    RunKey{"file", path, "(required)", "the file of the history, of SQLite; `hysteron history` exports it"},
     RunKey{"points", texts, "(all inputs and outputs)",
            "what is kept: inputs, outputs, parameters as `HYST.C1`, what the task says of itself as `task.fault` and "
            "of its devices as `device.NAME.timeouts`; the name of a vector is each of its elements"},
@@ -274,13 +281,13 @@ constexpr std::array history_keys{
 constexpr std::array mqtt_keys{
     RunKey{"broker", text, "(required)", "name or address of the MQTT broker"},
     RunKey{"port", whole, "(1883, with `ca` 8883)", "its port", 1.0, 65535.0},
-    RunKey{"ca", text, "(none: in the clear)",
+    RunKey{"ca", path, "(none: in the clear)",
            "TLS: certificates in PEM that sign the broker's; of public ones, "
            "`/etc/ssl/certs/ca-certificates.crt`"},
-    RunKey{"certificate", text, "(none)", "the client's certificate in PEM, where the broker asks for one"},
-    RunKey{"key", text, "(none)", "its private key in PEM, without a password; its owner and group alone may read it"},
+    RunKey{"certificate", path, "(none)", "the client's certificate in PEM, where the broker asks for one"},
+    RunKey{"key", path, "(none)", "its private key in PEM, without a password; its owner and group alone may read it"},
     RunKey{"user", text, "(none)", "the user name that is said to the broker"},
-    RunKey{"password_file", text, "(none)",
+    RunKey{"password_file", path, "(none)",
            "a file with the user's password in one line; its owner and group alone may read it"},
     RunKey{"client_id", text, "(made up at each start)", "the client's name, of no other client of the broker"},
     RunKey{.name = "payload",
@@ -306,7 +313,7 @@ constexpr std::array mqtt_keys{
            86400.0 * s,
            {},
            "`every` at the least"},
-    RunKey{"file", text, "(none: in memory alone)",
+    RunKey{"file", path, "(none: in memory alone)",
            "the file, of SQLite, of rows that have waited for a second: they outlive a power cut"},
     RunKey{"keep", time, "\"1d\"", "rows that wait for the broker for longer are lost", s, 1000.0 * 86400.0 * s},
     RunKey{"megabytes", whole, "64",
@@ -344,7 +351,7 @@ constexpr std::array modbus_keys{
                "where points lie: without holes from address 0 on, or as in OpenPLC's `%QX`, `%IX`, `%IW`, `%QW`, "
                "`%MW`, `%MD`, `%ML`",
            .words = map_words},
-    RunKey{"lock_file", text, "(none)", "keeps the addresses through edits of the diagram"},
+    RunKey{"lock_file", path, "(none)", "keeps the addresses through edits of the diagram"},
     RunKey{"expose", texts, "(all points)",
            "the points on the map, as `hysteron map` lists them; `\"HYST.*\"` is all that begin with `HYST.`, `\"*\"` "
            "all"},
@@ -380,11 +387,11 @@ constexpr std::array rtu_keys{
 };
 
 constexpr std::array tls_keys{
-    RunKey{"certificate", text, "(required)",
+    RunKey{"certificate", path, "(required)",
            "the server's certificate, a file in PEM, with those behind it that lead to its root"},
-    RunKey{"key", text, "(required)",
+    RunKey{"key", path, "(required)",
            "its private key in PEM, without a password; its owner and group alone may read it"},
-    RunKey{"clients", text, "(required)",
+    RunKey{"clients", path, "(required)",
            "certificates in PEM that sign those of clients, or clients' own; no other client is served"},
     RunKey{"without_role", texts, "[]", "what a client may do whose certificate names no role; as under `[roles]`"},
 };
@@ -397,9 +404,9 @@ constexpr std::array role_keys{
 constexpr std::array web_keys{
     RunKey{"listen", text, "(none: no page, but for `--web`)",
            "address and port of the page, `\"127.0.0.1:8080\"`; a host that is generated with it has the page"},
-    RunKey{"token_file", text, "(none: nobody changes anything)",
+    RunKey{"token_file", path, "(none: nobody changes anything)",
            "a file with the token of who may write, its owner's alone; `--web-token-file` counts before it"},
-    RunKey{"read_token_file", text, "(none)",
+    RunKey{"read_token_file", path, "(none)",
            "a file with another token, of who may only read beyond the loopback; `--web-read-token-file` counts before "
            "it"},
     RunKey{

@@ -12,7 +12,7 @@ namespace hysteron::runtime {
 /// The lowest number where each above 0 will do.
 inline constexpr double above_zero = std::numeric_limits<double>::min();
 
-enum class KeyKind : std::uint8_t { flag, text, texts, number, whole, time, choice };
+enum class KeyKind : std::uint8_t { flag, text, path, texts, number, whole, time, choice };
 
 struct RunKey {
   std::string_view name;

@@ -80,6 +80,13 @@ void TomlReader::read(std::string_view key, std::string& into) {
       return wrong_type(key, "a text that is not empty", "\"name\"");
     }
     into = node->as_string()->get();
+    if (declared(key).kind == KeyKind::path && (into == "~" || into.starts_with("~/"))) {
+      // With the folder named ~ that a start may have made already, for what is kept there.
+      diagnostics_->warning(error::wrong_run_value, place(key),
+                            std::string(key) + " = \"" + into + "\" lies in a folder named ~, and in no home.",
+                            "write the path from / on; only a shell knows what ~ stands for. What lies in the folder ~ "
+                            "may have to be moved.");
+    }
   }
 }
 

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "runtime/config/device_field.hpp"
+#include "runtime/host/new_places.hpp"
 #include "runtime/host/notices.hpp"
 #include "runtime/host/output_turn.hpp"
 #include "runtime/host/retained_state.hpp"
@@ -210,7 +211,7 @@ class CertificateCare {
 
 /// Until the cyclic thread is done; the service manager hears that this lives for as long as cycles go on.
 void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, const OutputClaims& claims, RunNotices& notices,
-              CertificateCare& certificate, nanoseconds period) {
+              CertificateCare& certificate, ServedMap* registers, nanoseconds period) {
   using Clock = std::chrono::steady_clock;
   const nanoseconds interval = service_watchdog() / 2;
   const nanoseconds longest = std::max<nanoseconds>(3 * period, milliseconds(500));
@@ -226,6 +227,9 @@ void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, const Output
     }
     notices.look();
     certificate.look();
+    if (registers != nullptr) {
+      registers->look(Clock::now());
+    }
     if (!is_stopping && stop_asked.load()) {
       tell_service_manager("STOPPING=1");
       is_stopping = true;
@@ -323,6 +327,9 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     (void)std::signal(SIGHUP, SIG_IGN);  // as nohup wants it
   }
   tell_of_unused_devices(config);
+  if (const std::string anew = new_places(config); !anew.empty()) {
+    tell("Start", anew, Weight::notice);
+  }
   if (config.trace) {
     refuse_foreign_trace(*config.trace, config.trace_place);
   }
@@ -423,7 +430,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     if (change) {
       change->begin(retainer.get(), trace.get(), registers.get());
     }
-    wait_for(cyclic, task, guard.get(), claims, notices, certificate, nanoseconds(shape.period));
+    wait_for(cyclic, task, guard.get(), claims, notices, certificate, registers.get(), nanoseconds(shape.period));
     end = cyclic.end();
     if (change) {
       change->end();

@@ -37,6 +37,8 @@ std::string_view meaning_of(Fault fault) {
       return "the next step to the safe value is lost in rounding";
     case Fault::lost_guard:
       return "its process is gone, and nothing would make the outputs safe if the task hung or died";
+    case Fault::overload:
+      return "the cyclic thread computes for more of the time than load in [task] allows";
     case Fault::none:
     case Fault::crash:
     case Fault::stop:
@@ -157,7 +159,8 @@ RunNotices::RunNotices(const RunConfig& config, const ProgramShape& shape, Task&
       field_(attachments.field),
       beside_(std::move(beside)),
       writes_(attachments.retainer, attachments.trace),
-      faults_(config, shape) {}
+      faults_(config, shape),
+      load_(config.task.most_load) {}
 
 std::vector<std::string> AbsenceNotices::lines(const std::vector<std::string>& absent, Clock::time_point now) {
   std::vector<std::string> lines;
@@ -181,6 +184,36 @@ std::vector<std::string> AbsenceNotices::lines(const std::vector<std::string>& a
   return lines;
 }
 
+std::string LoadNotices::line(const LoadReport& report) {
+  if (report.stretch == seen_) {
+    return {};
+  }
+  seen_ = report.stretch;
+  constexpr std::uint64_t well_for = 10;
+  const bool is_overload = report.load > most_;
+  const bool loses_periods = 10 * report.skipped > report.periods;
+  well_ = is_overload || loses_periods ? 0 : well_ + 1;
+  const std::string load = fmt::format("{:.0f} % of the time", 100.0 * report.load);
+  if (told_ && well_ == well_for) {
+    told_ = false;
+    return fmt::format("well again: the cyclic thread computes for {}.", load);
+  }
+  if (told_ || well_ > 0) {
+    return {};
+  }
+  told_ = true;
+  return is_overload
+             ? fmt::format(
+                   "the cyclic thread computes for {}, and {:.3g} % is the most that it should (load in [task]); "
+                   "{} of the last {} periods passed without a cycle. Leave out what costs most, state a longer "
+                   "sample time, or take a faster processor.",
+                   load, 100.0 * most_, report.skipped, report.periods)
+             : fmt::format(
+                   "{} of the last {} periods passed without a cycle, though the cyclic thread computes for {} "
+                   "alone: others have the processor. `hysteron doctor --rt` says what to change.",
+                   report.skipped, report.periods, load);
+}
+
 std::string ForceNotices::line(const std::vector<std::string>& forced, Clock::time_point now) {
   if (!news_.take(forced, now)) {
     return {};
@@ -199,6 +232,9 @@ void RunNotices::look() {
     }
   }
   look_beside();
+  if (const std::string line = load_.line(task_->load()); !line.empty()) {
+    tell("Load", line, load_.is_told() ? Weight::warning : Weight::notice);
+  }
   FaultReport report = task_->faults();
   if (guard_ != nullptr && !guard_->may_write() && report.fault == Fault::none) {
     // A task that hangs cannot say so.

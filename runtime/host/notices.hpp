@@ -105,6 +105,24 @@ class AbsenceNotices {
   std::vector<std::string> told_{};
 };
 
+/// A cyclic thread that computes for too much of the time, and periods that pass without a cycle: told where it begins,
+/// and once ten stretches in a row were well.
+class LoadNotices {
+ public:
+  /// `most`: the load above which it is too much.
+  explicit LoadNotices(double most) : most_(most) {}
+  /// What is to be said; empty where this stretch was seen before, or nothing changed.
+  [[nodiscard]] std::string line(const LoadReport& report);
+  /// Whether the last line said that something is wrong.
+  [[nodiscard]] bool is_told() const { return told_; }
+
+ private:
+  double most_;
+  std::uint64_t seen_ = 0;
+  std::uint64_t well_ = 0;  ///< stretches in a row
+  bool told_ = false;
+};
+
 /// Inputs that are forced: a line where that changed, one a second at the most.
 class ForceNotices {
  public:
@@ -153,6 +171,7 @@ class RunNotices {
   std::map<std::string, Remarks*> beside_;
   WriteNotices writes_;
   FaultNotices faults_;
+  LoadNotices load_;
   ForceNotices forces_{};
   ForceNotices::Clock::time_point next_look_at_forces_{};
 };

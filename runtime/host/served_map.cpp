@@ -22,6 +22,8 @@ template <class Work>
 auto placed(const Place& place, const Work& work) {
   try {
     return work();
+  } catch (const DiskFullError&) {
+    throw;  // it passes, and nobody is refused for it
   } catch (const InputError& refused) {
     Diagnostics diagnostics;
     for (Diagnostic one : refused.diagnostics().all()) {
@@ -50,6 +52,8 @@ modbus::RegisterMap map_with(const ModbusConfig& config, const std::string& titl
                                             .lock_file = config.lock_file,
                                             .lock_text = std::move(lock_text)});
 }
+
+constexpr std::chrono::seconds between_tries{10};
 
 PlannedMap planned_map(const ModbusConfig& config, const std::string& title, std::span<const Point> points) {
   // Where that cannot be told, reading it says why.
@@ -107,7 +111,7 @@ bool is_of(const Point& point, std::span<const ProgramSignal> parameters) {
 
 ServedMap::ServedMap(const RunConfig& config, std::string title, Task& task,
                      const std::shared_ptr<const modbus::TlsContext>& tls)
-    : config_(&config), title_(std::move(title)), first_points_(task.door().points().size()) {
+    : config_(&config), title_(std::move(title)), door_(&task.door()), first_points_(task.door().points().size()) {
   const ModbusConfig& modbus = *config.modbus;
   const PlannedMap planned = planned_map(modbus, title_, task.door().points());
   server_ = std::make_unique<modbus::Server>(
@@ -126,11 +130,9 @@ ServedMap::ServedMap(const RunConfig& config, std::string title, Task& task,
                             .tls = tls,
                             .tell = [](const std::string& line) { tell("Modbus", line); },
                             .place = modbus.place});
-  try {
-    write_lock_file(modbus, planned.lock_text);
-  } catch (const DiskFullError& full) {
+  if (const std::string problem = try_to_write(planned.lock_text); !problem.empty()) {
     // It keeps no task from starting; without another edit, the next start has the same addresses.
-    tell("Modbus", full.diagnostics().all().front().cause + " It is tried at the next start: edit nothing before.");
+    tell("Modbus", problem + " It is tried again every 10 s: edit nothing before.");
   }
   tell_warnings(planned.map.warnings().all());
 }
@@ -176,11 +178,14 @@ void ServedMap::show(NextMap next) {
   server_->show(next.map);
   if (const std::string text = modbus::lock_text(next.map);
       !modbus.lock_file.empty() && text != modbus::lock_text(*before)) {
+    std::string problem;
     try {
-      write_lock_file(modbus, text);
+      problem = try_to_write(text);
     } catch (const InputError& refused) {
-      tell("Modbus", refused.diagnostics().all().front().cause +
-                         " After a restart, registers that came with the online change may be elsewhere.");
+      problem = refused.diagnostics().all().front().cause;
+    }
+    if (!problem.empty()) {
+      tell("Modbus", problem + " After a restart, registers that came with the online change may be elsewhere.");
     }
   }
   std::vector<Diagnostic> warnings;
@@ -188,6 +193,41 @@ void ServedMap::show(NextMap next) {
     return std::ranges::find(before->warnings().all(), one.cause, &Diagnostic::cause) == before->warnings().all().end();
   });
   tell_warnings(warnings);
+}
+
+std::string ServedMap::try_to_write(const std::string& lock_text) {
+  std::string problem;
+  try {
+    write_lock_file(*config_->modbus, lock_text);
+  } catch (const DiskFullError& full) {
+    problem = full.diagnostics().all().front().cause;
+  }
+  const std::scoped_lock lock(unwritten_mutex_);
+  unwritten_ = problem.empty() ? "" : lock_text;
+  try_at_ = std::chrono::steady_clock::now() + between_tries;
+  door_->shortage(Shortage::lock, !unwritten_.empty());
+  return problem;
+}
+
+void ServedMap::look(std::chrono::steady_clock::time_point now) {
+  std::string text;
+  {
+    const std::scoped_lock lock(unwritten_mutex_);
+    if (unwritten_.empty() || now < try_at_) {
+      return;
+    }
+    text = unwritten_;
+  }
+  try {
+    if (try_to_write(text).empty()) {
+      tell("Modbus", fmt::format("the addresses of the registers are in {} now.", config_->modbus->lock_file),
+           Weight::notice);
+    }
+  } catch (const InputError& refused) {
+    tell("Modbus", refused.diagnostics().all().front().cause + " It is not tried again.");
+    const std::scoped_lock lock(unwritten_mutex_);
+    unwritten_.clear();
+  }
 }
 
 void check_register_map(const RunConfig& config, const StepProgram& program) {

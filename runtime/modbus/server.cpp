@@ -192,6 +192,7 @@ class Server::Loop {
       }
       if (!is_allowed(allow_, peer)) {
         add(counters_.refused_address);
+        tell_of_refusal(address_text(peer), "is refused by allow: no network there has this address.", now);
         continue;
       }
       const bool is_full = clients_.size() >= options_.connections;
@@ -200,12 +201,17 @@ class Server::Loop {
         take(std::move(socket), peer, now);
       } else if (is_full) {
         add(counters_.refused_full);
-      } else {
-        add(counters_.refused_share);
         tell_of_refusal(
             address_text(peer),
-            fmt::format("a connection beyond the {} of connections_per_address.", options_.connections_per_address),
+            fmt::format("is refused a connection: the {} of connections are taken, each by a client that asks.",
+                        clients_.size()),
             now);
+      } else {
+        add(counters_.refused_share);
+        tell_of_refusal(address_text(peer),
+                        fmt::format("is refused a connection beyond the {} of connections_per_address.",
+                                    options_.connections_per_address),
+                        now);
       }
     }
   }
@@ -386,7 +392,8 @@ class Server::Loop {
         if (*ending == Ending::tls_failed || *ending == Ending::handshake_late) {
           const std::string failure = place->second.transport->failure();
           tell_of_refusal(address_text(place->second.peer),
-                          "by TLS: " + (failure.empty() ? "the handshake took too long." : failure + "."), now);
+                          "is refused by TLS: " + (failure.empty() ? "the handshake took too long." : failure + "."),
+                          now);
         }
         forget(place, counters_.ended.at(static_cast<std::size_t>(*ending)));
       }
@@ -397,7 +404,7 @@ class Server::Loop {
   template <class Name>
   void tell_what_was_met(const Name& name, Instant now) {
     if (const std::string why = responder_.take_refusal(); !why.empty()) {
-      tell_of_refusal(name(), "by the program: " + why, now);
+      tell_of_refusal(name(), "is refused by the program: " + why, now);
     }
     const std::uint64_t saturated = responder_.saturated();
     if (saturated != counters_.saturated.load(std::memory_order_relaxed) && options_.tell &&
@@ -412,13 +419,12 @@ class Server::Loop {
   }
 
   /// Once a second: whoever is refused cannot fill a log.
-  void tell_of_refusal(const std::string& client, const std::string& why, Instant now) {
+  void tell_of_refusal(const std::string& client, const std::string& how, Instant now) {
     if (!options_.tell || (told_ && now < *told_ + std::chrono::seconds(1))) {
       ++untold_;
       return;
     }
-    options_.tell(
-        fmt::format("{} is refused {}{}", client, why, untold_ > 0 ? fmt::format(" {} others before.", untold_) : ""));
+    options_.tell(fmt::format("{} {}{}", client, how, untold_ > 0 ? fmt::format(" {} others before.", untold_) : ""));
     told_ = now;
     untold_ = 0;
   }

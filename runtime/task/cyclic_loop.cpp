@@ -16,6 +16,7 @@ LoopEnd run_loop(const LoopSettings& settings, Clock& clock, CycleBody& body, co
   const std::uint64_t before = statistics.run + statistics.skipped;  // of an earlier run of the same task
   std::int64_t due = first;
   std::int64_t stolen = clock.stolen();
+  const std::int64_t cpu_before = clock.own_cpu() - statistics.cpu;
   CycleTimes times{.previous_end = first - settings.period};
   for (;;) {
     clock.sleep_until(due);
@@ -43,7 +44,9 @@ LoopEnd run_loop(const LoopSettings& settings, Clock& clock, CycleBody& body, co
     const std::int64_t cpu = clock.own_cpu();
     const bool goes_on = body.cycle(
         {.number = statistics.run, .period = statistics.elapsed, .skipped = dropped, .due = due, .start = times.start});
-    times.cpu = clock.own_cpu() - cpu;
+    const std::int64_t cpu_now = clock.own_cpu();
+    times.cpu = cpu_now - cpu;
+    statistics.cpu = cpu_now - cpu_before;
     times.end = clock.now();
     const std::int64_t stolen_now = clock.stolen();
     times.steal = stolen_now - stolen;

@@ -68,6 +68,7 @@ struct LoopStatistics {
   std::uint64_t elapsed = 0;  ///< periods by the clock since the first cycle, up to and with the newest
   std::array<std::uint64_t, cause_count> events{};  ///< by cause, each once
   std::uint64_t carried = 0;                        ///< cycles late by the one before
+  std::int64_t cpu = 0;                             ///< ns that the thread has computed, in cycles and between them
   Histogram lateness{};                             ///< of the start
   Histogram duration{};                             ///< from start to end
 

@@ -80,8 +80,11 @@ std::optional<std::vector<std::byte>> RetainFolder::read(std::size_t slot) {
 }
 
 std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> bytes) {
-  std::error_code unknown;
-  std::filesystem::create_directories(folder_, unknown);
+  std::error_code failed;
+  std::filesystem::create_directories(folder_, failed);
+  if (failed) {
+    return folder_.string() + ": " + failed.message();
+  }
   if (!held_.is_open()) {
     try {
       open();

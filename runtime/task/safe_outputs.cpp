@@ -36,9 +36,9 @@ double longest_way(const OutputSafety& output, double sample_time) noexcept {
 }
 
 std::string_view name_of(Fault fault) {
-  constexpr std::array<std::string_view, 11> names{"none",        "hang",      "crash",        "not finite",
+  constexpr std::array<std::string_view, 12> names{"none",        "hang",      "crash",        "not finite",
                                                    "stale input", "lost link", "missed cycle", "stop",
-                                                   "lost client", "not safe",  "lost guard"};
+                                                   "lost client", "not safe",  "lost guard",   "overload"};
   return names[static_cast<std::size_t>(fault)];
 }
 
@@ -62,6 +62,7 @@ void SafeOutputs::start_from(std::span<const double> values) noexcept {
 }
 
 void SafeOutputs::step(std::span<const double> wanted, Fault fault) noexcept {
+  held_back_ = 0;
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const OutputSafety& output = outputs_[i];
     const Fault now = fault != Fault::none ? fault : std::isfinite(wanted[i]) ? Fault::none : Fault::not_finite;
@@ -69,6 +70,7 @@ void SafeOutputs::step(std::span<const double> wanted, Fault fault) noexcept {
     faults_[i] = now;
     if (now == Fault::none) {
       values_[i] = towards(values_[i], limited(output, wanted[i]), output.slew * sample_time_);
+      held_back_ += values_[i] == wanted[i] ? 0 : 1;
     } else if (since_[i] > output.hold_cycles && output.action != SafeAction::hold) {
       values_[i] = next(i);
     }

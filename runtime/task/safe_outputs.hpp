@@ -26,6 +26,7 @@ enum class Fault : std::uint8_t {
   lost_client,   ///< the Modbus client that has to be heard is silent
   not_safe,      ///< at the end: an output cannot reach its safe value, since its ramp is lost in rounding
   lost_guard,    ///< the guard's process is gone, though its work was not done
+  overload,      ///< the cyclic thread computes for more of the time than it may, and the policy is a fault
 };
 [[nodiscard]] std::string_view name_of(Fault fault);
 
@@ -59,6 +60,8 @@ class SafeOutputs {
 
   [[nodiscard]] std::span<const double> values() const noexcept { return values_; }
   [[nodiscard]] Fault fault(std::size_t output) const noexcept { return faults_[output]; }
+  /// Outputs that are not what is wanted, without a fault: low, high or slew holds them back in this cycle.
+  [[nodiscard]] std::size_t held_back() const noexcept { return held_back_; }
   /// Any output's fault; none where there is none.
   [[nodiscard]] Fault worst() const noexcept;
   /// The output of that fault; behind the last where there is none.
@@ -79,6 +82,7 @@ class SafeOutputs {
   std::vector<double> values_;
   std::vector<Fault> faults_;
   std::vector<std::uint64_t> since_;  ///< cycles in a fault
+  std::size_t held_back_ = 0;
 };
 
 }  // namespace hysteron::runtime

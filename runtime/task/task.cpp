@@ -24,6 +24,7 @@ Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments a
       door_(program, settings.inputs, settings.outputs, settings.field_points),
       safe_(settings.outputs, static_cast<double>(program.shape().period) * 1e-9),
       watchdog_(settings.watchdog),
+      load_(program.shape().period, settings.most_load),
       field_counts_(settings.field_points.size()),
       forces_(program.shape().inputs.size()),
       computed_(program.shape().outputs.size()),
@@ -81,6 +82,7 @@ bool Task::cycle(const CycleMoment& moment) noexcept {
     follow_change(moment.number);
   }
   safe_.step(computed_, fault);
+  status_.held_back += safe_.held_back();
   status_.fault = is_awaited_ ? Fault::none : safe_.worst();
   status_.state = is_awaited_                    ? TaskState::starting
                   : status_.fault == Fault::none ? TaskState::running
@@ -171,6 +173,9 @@ Fault Task::read_inputs() noexcept {
       (client_is_lost_.load(std::memory_order_relaxed) || client_was_lost_.load(std::memory_order_relaxed))) {
     found(Fault::lost_client, no_port);
   }
+  if (is_free() && settings_.overload_is_a_fault && load_.is_too_much()) {
+    found(Fault::overload, no_port);
+  }
   status_.forced = 0;
   for (std::size_t i = 0; i < given_.size(); ++i) {
     const bool stale = settings_.inputs[i].longest_age > 0 && ages_[i] > settings_.inputs[i].longest_age;
@@ -206,6 +211,8 @@ bool Task::write_outputs() noexcept {
 }
 
 bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Verdict /*verdict*/) noexcept {
+  load_.finished(statistics);
+  status_.load = load_.load();
   if (!tripped_ && watchdog_.finished(duration)) {
     tripped_ = true;
     end_forces();

@@ -15,6 +15,7 @@
 #include "runtime/task/fault_log.hpp"
 #include "runtime/task/field_io.hpp"
 #include "runtime/task/guard.hpp"
+#include "runtime/task/load.hpp"
 #include "runtime/task/retain.hpp"
 #include "runtime/task/safe_outputs.hpp"
 #include "runtime/task/step_program.hpp"
@@ -33,6 +34,8 @@ struct TaskSettings {
   std::int64_t longest_delivery = 10'000'000'000;  ///< at the end: for devices to take the safe values, once reached
   /// After a lost client the outputs stay safe until task.reset, not only until it is back.
   bool reset_after_lost_client = false;
+  double most_load = 0.8;             ///< of the time, what the cyclic thread may compute
+  bool overload_is_a_fault = false;   ///< else it is told of
   std::vector<Point> field_points{};  ///< what the field says of itself (FieldIo::count)
 };
 
@@ -71,6 +74,8 @@ class Task final : private CycleBody {
   [[nodiscard]] Fault fault() const noexcept { return status_.fault; }
   /// From any thread.
   [[nodiscard]] FaultReport faults() const noexcept { return faults_.report(); }
+  /// From any thread.
+  [[nodiscard]] LoadReport load() const noexcept { return load_.report(); }
   /// From any thread: moves for as long as the cycles go on, those on the way to the safe values too.
   [[nodiscard]] std::uint64_t beats() const noexcept { return beats_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::span<const double> outputs() const noexcept { return safe_.values(); }
@@ -104,6 +109,7 @@ class Task final : private CycleBody {
   TaskDoor door_;
   SafeOutputs safe_;
   Watchdog watchdog_;
+  LoadWatch load_;
   LoopStatistics statistics_{};
   std::uint64_t applied_commits_ = 0;
   std::uint64_t offered_commits_ = 0;  ///< to be retained

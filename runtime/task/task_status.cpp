@@ -1,6 +1,7 @@
 #include "runtime/task/task_status.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hysteron::runtime {
 namespace {
@@ -20,7 +21,7 @@ constexpr Status count_of(const char* name, const char* meaning) {
 
 constexpr const char* faults =
     "0 none, 1 hang, 2 crash, 3 not finite, 4 stale input, 5 lost link, 6 missed cycle, 7 stop, 8 lost client, "
-    "9 not safe, 10 lost guard";
+    "9 not safe, 10 lost guard, 11 overload";
 
 /// In the order in which status_values() gives their values.
 constexpr std::array statuses{
@@ -61,9 +62,14 @@ constexpr std::array statuses{
     Status{"task.shortages", PointType::uint16, "1",
            "what is tried again while the control goes on, by bits: 1 Modbus has no address yet, 2 nor has the page, "
            "4 the serial line of the server, 8 a device never answered, 16 TLS, 32 MQTT, 64 history, 128 trace, 256 "
-           "retained values",
+           "retained values, 512 the lock file of the registers",
            false, true},
     Status{"task.forced", PointType::uint16, "1", "inputs that the live page forces", false, true},
+    Status{"task.load", PointType::uint16, "%",
+           "of the last second, what the cyclic thread computed; of ten periods where those take longer", false, true},
+    Status{"task.held_back", PointType::uint64, "1",
+           "times that low, high or slew kept an output from what the diagram gives, each output once a cycle", true,
+           true},
 };
 static_assert(statuses.size() == status_count);
 
@@ -142,6 +148,8 @@ std::array<double, status_count> status_values(const TaskStatus& status, const L
       static_cast<double>(status.last_change),
       static_cast<double>(shortages_of(status, shortages)),
       static_cast<double>(status.forced),
+      std::round(100.0 * status.load),
+      static_cast<double>(status.held_back),
   };
 }
 

@@ -36,6 +36,8 @@ struct TaskStatus {
   std::uint64_t version = 1;     ///< of the diagram, since the start
   std::uint8_t last_change = 0;  ///< online, as task.online_change says it
   std::size_t forced = 0;        ///< inputs
+  std::uint64_t held_back = 0;   ///< outputs, once a cycle
+  double load = 0.0;             ///< own processor time over time
   double heartbeat = 0.0;
   std::span<const double> field{};  ///< as the points of the field
 };
@@ -45,7 +47,7 @@ struct TaskStatus {
 /// The same as points, in the order of their values.
 [[nodiscard]] std::vector<Point> status_points();
 
-inline constexpr std::size_t status_count = 32;
+inline constexpr std::size_t status_count = 34;
 /// `high_lateness`: that of 99.99 % of the cycles; `shortages`: those that servers tell, as bits.
 [[nodiscard]] std::array<double, status_count> status_values(const TaskStatus& status, const LoopStatistics& statistics,
                                                              std::int64_t high_lateness,

@@ -1,4 +1,5 @@
-// Measures the Modbus server beside a plain libmodbus server under the same attacks and prints docs/runtime-results.md.
+// Measures the Modbus server beside a plain libmodbus server under the same attacks, and prints its section of
+// docs/runtime-results.md.
 //
 //   runtime_results [seconds an attack] [seconds of throughput] [connections to open and close]
 #include <fmt/format.h>
@@ -71,10 +72,14 @@ struct Tls {
   test::ClientContext client = files.client_of("all");
 };
 
+/// Whether each victim of ours had its answers, and no wrong one.
+bool all_well = true;
+
 std::string row_of(ServerKind kind, const std::string& attack, milliseconds time, const Tls* tls = nullptr) {
   const ServedProcess server(kind, tls != nullptr ? &tls->options : nullptr);
   const auto result = test::victim_beside(attack, server.port(), time, std::chrono::seconds(2),
                                           {.connections = 1100, .tls = tls != nullptr ? tls->client.get() : nullptr});
+  all_well = all_well && (kind == ServerKind::plain || (result.errors == 0 && result.wrong == 0 && server.is_alive()));
   return fmt::format("{} | {} | {} | {} | {}{}", result.requests, result.errors, result.wrong,
                      milliseconds_at(result.latencies, 0.99), milliseconds_at(result.latencies, 1.0),
                      server.is_alive() ? "" : ", died");
@@ -148,6 +153,7 @@ void print_throughput(milliseconds time, const Tls& tls) {
       time.count() / 1000);
   const auto row = [&](const char* name, const ServedProcess& server, ssl_ctx_st* client) {
     const Throughput done = throughput(server.port(), time, client);
+    all_well = all_well && done.wrong == 0;
     fmt::print("| {} | {:.0f} | {} |\n", name,
                1e3 * static_cast<double>(done.requests) / static_cast<double>(time.count()), done.wrong);
     (void)std::fflush(stdout);
@@ -170,6 +176,7 @@ void print_connects(int count) {
   while (server.open_descriptors() != before && Clock::now() < until) {
     std::this_thread::sleep_for(milliseconds(20));
   }
+  all_well = all_well && failed == 0 && server.open_descriptors() == before;
   fmt::print("\nConnected and closed {} times: {} failed, {} descriptors lost.\n", count, failed,
              server.open_descriptors() - before);
 }
@@ -185,12 +192,9 @@ int main(int count, char** arguments) {
   ::setrlimit(RLIMIT_NOFILE, &files);
   const hysteron::soak::Steal steal;
   fmt::print(
-      "# Results of the runtime\n\nPrinted by `scripts/soak`, which builds and runs the preset `soak`.\n\n## The "
-      "server "
-      "under attack\n\nThe left half is Hysteron's server, the right half libmodbus' documented `select` server; both "
-      "had the same attack\nbeside the same victim, one after the other. The victim asks 200 times a second; an error "
-      "is "
-      "an answer that did not\ncome within 2 s, wrong is a value that nobody may have written.\n\n");
+      "The left half is Hysteron's server, the right half libmodbus' documented `select` server; both had the same "
+      "attack\nbeside the same victim, one after the other. The victim asks 200 times a second; an error is an answer "
+      "that did not\ncome within 2 s, wrong is a value that nobody may have written.\n\n");
   const hysteron::soak::Tls tls;
   hysteron::soak::print_attacks(std::chrono::seconds(number(1, 5)));
   hysteron::soak::print_attacks_through_tls(std::chrono::seconds(number(1, 5)), tls);
@@ -202,5 +206,5 @@ int main(int count, char** arguments) {
       "\nThe host kept {:.2f} % of the processor time from this machine meanwhile. The load of its {} processors, "
       "averaged over 5 minutes, was {:.1f} at the end:\nlatencies and requests a second hold for such a machine.\n",
       steal.percent(), std::thread::hardware_concurrency(), load[1]);
-  return 0;
+  return hysteron::soak::all_well ? 0 : 1;
 }

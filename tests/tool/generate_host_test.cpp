@@ -134,6 +134,8 @@ TEST(GenerateHost, TheFolderHasTheStepTheSourcesTheUnitAndAReadme) {
   EXPECT_EQ(outcome.out,
             fmt::format("made/here/plant.hpp\nmade/here/plant_step.cpp\nmade/here/main.cpp\nmade/here/CMakeLists.txt\n"
                         "made/here/README.md\nmade/here/run.toml\nmade/here/hysteron-plant.service.in\n"
+                        "made/here/Containerfile\nmade/here/package/postinst\nmade/here/package/prerm\n"
+                        "made/here/package/postrm\n"
                         "made/here/hysteron: {} sources\n",
                         tool::host_sources().size()));
   for (const tool::EmbeddedSource& source : tool::host_sources()) {
@@ -149,7 +151,11 @@ TEST(GenerateHost, TheFolderHasTheStepTheSourcesTheUnitAndAReadme) {
       ContainsRegex("\\.relations = \\{\n +\\{\\.numbers = \\{\n +\\{\\.parameter = [0-9]+\\},\n +\\{\\.parameter = "
                     "[0-9]+\\}\\}\\}\\},\n"))
       << "a commit is judged there as by serve";
-  EXPECT_LE(std::ranges::count(bench.read("made/here/README.md"), '\n'), 22);
+  EXPECT_LE(std::ranges::count(bench.read("made/here/README.md"), '\n'), 25);
+  EXPECT_THAT(
+      bench.read("made/here/Containerfile"),
+      AllOf(HasSubstr("\nUSER 990\n"), HasSubstr("ENTRYPOINT [\"/usr/bin/plant_host\", \"/etc/hysteron-plant.toml\"]"),
+            HasSubstr("libmodbus-dev"), Not(HasSubstr("{"))));
   EXPECT_THAT(bench.read("made/here/CMakeLists.txt"), Not(HasSubstr("Boost"))) << "who has no page needs none";
   EXPECT_THAT(bench.read("made/here/README.md"), Not(HasSubstr("libboost-dev")));
   const auto again = bench.shell("hysteron generate plant.st --host --config RUN.toml --out made/here --float32");
@@ -335,6 +341,26 @@ TEST(GenerateHost, BuiltItHasTheBitsTheRegistersAndTheRetainedValuesOfServe) {
   bench.write("stage/etc/hysteron-plant.toml", "# edited on the machine\n");
   EXPECT_EQ(bench.shell("cmake --install build").code, 0);
   EXPECT_EQ(bench.read("stage/etc/hysteron-plant.toml"), "# edited on the machine\n");
+
+  // A package of Debian, where there is what makes one.
+  if (bench.shell("command -v dpkg-shlibdeps").code == 0) {
+    const auto packed =
+        bench.shell("cmake -DCMAKE_INSTALL_PREFIX=/usr -DPACKAGE_VERSION=7.1 build && cd build && cpack");
+    ASSERT_EQ(packed.code, 0) << packed.out << packed.err;
+    const std::string package = "build/hysteron-plant_7.1_*.deb";
+    const auto contents = bench.shell("dpkg-deb --contents " + package).out;
+    for (const char* const file : {" ./usr/bin/plant_host\n", " ./usr/lib/systemd/system/hysteron-plant.service\n",
+                                   " ./etc/hysteron-plant.toml\n"}) {
+      EXPECT_THAT(contents, HasSubstr(file));
+    }
+    EXPECT_THAT(contents, Not(HasSubstr("/usr/local")));
+    EXPECT_EQ(bench.shell("dpkg-deb --info " + package + " conffiles").out, "/etc/hysteron-plant.toml\n");
+    EXPECT_THAT(bench.shell("dpkg-deb --field " + package).out,
+                AllOf(HasSubstr("Package: hysteron-plant\n"), HasSubstr("libmodbus5"), HasSubstr("libssl3")));
+    const auto unit_of_package = bench.shell("dpkg-deb --fsys-tarfile " + package +
+                                             " | tar -xO ./usr/lib/systemd/system/hysteron-plant.service");
+    EXPECT_THAT(unit_of_package.out, HasSubstr("\nExecStart=/usr/bin/plant_host /etc/hysteron-plant.toml\n"));
+  }
 }
 
 }  // namespace

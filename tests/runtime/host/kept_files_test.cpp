@@ -8,17 +8,23 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "runtime/host/host.hpp"
+#include "runtime/host/new_places.hpp"
 #include "runtime/host/notices.hpp"
+#include "runtime/host/served_map.hpp"
 #include "runtime/task/trace_output.hpp"
 #include "support/diagnostic.hpp"
 #include "tests/runtime/task/accumulator.hpp"
 #include "tests/support/error_page.hpp"
+#include "tests/support/file_size_limit.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/support/soon.hpp"
 
@@ -170,6 +176,40 @@ TEST_F(KeptFiles, ALockFileThatCannotBeOneIsRefusedAtItsTable) {
   }
 }
 
+TEST_F(KeptFiles, ALockFileThatHasNoRoomKeepsNoTaskFromStartingAndIsWrittenOnceThereIs) {
+  test::Accumulator program;
+  RunConfig config = parse_run_config(
+      "RUN.toml",
+      fmt::format("[outputs.Y]\nsafe = 0.0\n[outputs.TORN]\nsafe = 0.0\n[modbus]\nport = 0\nlock_file = \"{}\"\n",
+                  folder / "plant.registers"),
+      program.shape());
+  config.task.loop.cycles = 1;
+  Task task(program, config.task);
+  const auto shortages = [&] {
+    VirtualClock clock;
+    const std::atomic<bool> stop{false};
+    (void)task.run(clock, stop);  // one more cycle
+    return static_cast<unsigned>(test::value(task.door(), "task.shortages"));
+  };
+  testing::internal::CaptureStderr();
+  std::optional<ServedMap> served;
+  {
+    const hysteron::test::FileSizeLimit full(600);  // room for lines on standard error, and not for the file
+    served.emplace(config, "PLANT", task, nullptr);
+    EXPECT_EQ(shortages() & 512U, 512U);
+    served->look(std::chrono::steady_clock::now() + std::chrono::seconds(11));
+    EXPECT_FALSE(std::filesystem::exists(folder / "plant.registers"));
+  }
+  served->look(std::chrono::steady_clock::now());
+  EXPECT_EQ(shortages() & 512U, 512U) << "not before its time";
+  served->look(std::chrono::steady_clock::now() + std::chrono::seconds(11));
+  EXPECT_EQ(shortages() & 512U, 0U);
+  EXPECT_THAT(contents_of(folder / "plant.registers"), HasSubstr(" Y\n"));
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              AllOf(HasSubstr("plant.registers cannot be written: File too large. It is tried again every 10 s"),
+                    HasSubstr("Modbus: the addresses of the registers are in ")));
+}
+
 TEST_F(KeptFiles, ATraceThatIsNoOrdinaryFileIsRefusedAtOnce) {
   const std::string pipe = folder / "run.trace";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
@@ -241,6 +281,25 @@ TEST(WriteNotices, FailuresAreAmongTheStatusOfTheTask) {
   const std::atomic<bool> stop{false};
   (void)task.run(clock, stop);
   EXPECT_GT(test::value(task.door(), "task.write_failures"), 0.0);
+}
+
+TEST(NewPlaces, AreToldWhereTheirPathIsRelativeAndNothingIsThere) {
+  const test::ScratchFolder folder;
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  RunConfig config;
+  config.retain = RetainConfig{.folder = "kept"};
+  config.modbus = ModbusConfig{.lock_file = "stage.registers"};
+  config.history = HistoryConfig{.file = (folder.path() / "far.history").string()};
+  EXPECT_EQ(new_places(config),
+            "nothing is there yet of kept ([retain] folder), stage.registers ([modbus] lock_file) in " +
+                std::filesystem::canonical(folder.path()).string() +
+                ", the folder in which the task was started. If it ran before, start it in the same folder, or write "
+                "absolute paths.");
+  std::filesystem::create_directory("kept");
+  std::ofstream("stage.registers") << "\n";
+  EXPECT_EQ(new_places(config), "") << "what is there is gone on with, and an absolute path is always the same";
+  std::filesystem::current_path(before);
 }
 
 }  // namespace

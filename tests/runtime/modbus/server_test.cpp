@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -81,8 +82,25 @@ TEST(Server, ListensOnLoopbackUnlessToldOtherwise) {
   EXPECT_EQ(ServerOptions{}.listen, "127.0.0.1");
 }
 
-TEST(Server, TheThirtyThirdIsRefusedWithoutHarm) {
-  ServerBench bench;
+/// What a server tells, from its thread.
+struct Told {
+  std::mutex mutex{};
+  std::vector<std::string> lines{};
+  [[nodiscard]] std::function<void(const std::string&)> taker() {
+    return [this](const std::string& line) {
+      const std::scoped_lock lock(mutex);
+      lines.push_back(line);
+    };
+  }
+  [[nodiscard]] std::string first() {
+    const std::scoped_lock lock(mutex);
+    return lines.empty() ? "" : lines.front();
+  }
+};
+
+TEST(Server, TheThirtyThirdIsRefusedWithoutHarmAndToldOf) {
+  Told told;
+  ServerBench bench({.tell = told.taker()});
   std::vector<std::unique_ptr<ClientSocket>> clients;
   for (int i = 0; i < 32; ++i) {
     clients.push_back(std::make_unique<ClientSocket>(bench.server.port()));
@@ -93,6 +111,8 @@ TEST(Server, TheThirtyThirdIsRefusedWithoutHarm) {
     EXPECT_EQ(ask(*client, test::read_one).size(), 11U);
   }
   EXPECT_EQ(bench.server.status().refused_full, 1U);
+  EXPECT_EQ(told.first(),
+            "127.0.0.1 is refused a connection: the 32 of connections are taken, each by a client that asks.");
   clients.pop_back();
   EXPECT_TRUE(test::soon([&] { return bench.server.status().open == 31; }));
   EXPECT_EQ(ask(ClientSocket(bench.server.port()), test::read_one).size(), 11U)
@@ -165,12 +185,8 @@ TEST(Server, AValueBeyondItsFormatIsToldOnceAMinute) {
 }
 
 TEST(Server, OneAddressHasItsShareAndLeavesTheRestToOthers) {
-  std::mutex mutex;
-  std::vector<std::string> lines;
-  ServerBench bench({.connections = 8, .connections_per_address = 3, .tell = [&](const std::string& line) {
-                       const std::scoped_lock lock(mutex);
-                       lines.push_back(line);
-                     }});
+  Told told;
+  ServerBench bench({.connections = 8, .connections_per_address = 3, .tell = told.taker()});
   const auto client_of = [&](unsigned host) {
     return std::make_unique<ClientSocket>(bench.server.port(), std::chrono::seconds(5), nullptr,
                                           INADDR_LOOPBACK + host);
@@ -191,16 +207,16 @@ TEST(Server, OneAddressHasItsShareAndLeavesTheRestToOthers) {
   clients.erase(clients.begin());
   EXPECT_TRUE(test::soon([&] { return bench.server.status().open == 5; }));
   EXPECT_EQ(ask(*client_of(0), test::read_one).size(), 11U) << "a place that is free is given again";
-  const std::scoped_lock lock(mutex);
-  ASSERT_FALSE(lines.empty());
-  EXPECT_EQ(lines.front(), "127.0.0.1 is refused a connection beyond the 3 of connections_per_address.");
+  EXPECT_EQ(told.first(), "127.0.0.1 is refused a connection beyond the 3 of connections_per_address.");
 }
 
 TEST(Server, TheAllowListIsAskedBeforeAByteIsRead) {
-  ServerBench bench({.allow = {"10.0.0.0/8"}});
+  Told told;
+  ServerBench bench({.allow = {"10.0.0.0/8"}, .tell = told.taker()});
   const ClientSocket client(bench.server.port());
   client.send(write_one);
   EXPECT_TRUE(client.sees_the_end());
+  EXPECT_EQ(told.first(), "127.0.0.1 is refused by allow: no network there has this address.");
   EXPECT_EQ(bench.server.status().refused_address, 1U);
   EXPECT_EQ(bench.server.status().requests, 0U);
   EXPECT_EQ(bench.door.writes(), 0U);

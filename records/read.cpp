@@ -56,7 +56,7 @@ std::size_t the_column(const Table& table, const ColumnName& wanted) {
 
 /// Gives the columns the names that are stated. A column that had the name before is passed over.
 void rename(Table& table, const ReadOptions& options) {
-  std::vector<std::size_t> found;
+  std::vector<std::optional<std::size_t>> found;
   for (const ColumnName& one : options.columns) {
     for (const ColumnName& other : options.columns) {
       if (&other < &one && equal_ignoring_case(other.name, one.name)) {
@@ -65,15 +65,24 @@ void rename(Table& table, const ReadOptions& options) {
                          "name one of them.");
       }
     }
-    found.push_back(the_column(table, one));
+    if (one.is_general && columns_called(table, one.in_file).empty()) {
+      table.notes.push_back(
+          fmt::format("there is no column {}, which the parameter file names for {}", one.in_file, one.name));
+      found.emplace_back();
+    } else {
+      found.emplace_back(the_column(table, one));
+    }
   }
   for (std::size_t k = 0; k < found.size(); ++k) {
+    if (!found[k]) {
+      continue;
+    }
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
-      if (i != found[k] && equal_ignoring_case(table.columns[i].name, options.columns[k].name)) {
+      if (i != *found[k] && equal_ignoring_case(table.columns[i].name, options.columns[k].name)) {
         table.columns[i].name += fmt::format(" ({})", i + 1);
       }
     }
-    TableColumn& column = table.columns[found[k]];
+    TableColumn& column = table.columns[*found[k]];
     column.in_file = column.name;
     column.name = options.columns[k].name;
     column.unit = options.columns[k].unit.empty() ? column.unit : options.columns[k].unit;

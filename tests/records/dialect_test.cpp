@@ -275,6 +275,16 @@ TEST(Dialect, ARangeOfRowsThatWereTurnedRoundIsOfTheirTimes) {
   EXPECT_THAT(parse_record("log.csv", text, {.begin = 1.0, .end = 3.0}).column("u").values, ElementsAre(10.0, 20.0));
 }
 
+/// A parameter file holds for records with other columns, too; an option is for this one.
+TEST(Dialect, NamesThatHoldForManyRecordsMayBeMissing) {
+  const std::string text = "t,u\n0,1\n1,2\n2,3\n";
+  const Record record =
+      parse_record("log.csv", text, {.columns = {{.name = "u", .in_file = "MAIN.u", .is_general = true}}});
+  EXPECT_THAT(record.column("u").values, ElementsAre(1.0, 2.0, 3.0));
+  EXPECT_THAT(record.notes(), ElementsAre("there is no column MAIN.u, which the parameter file names for u"));
+  EXPECT_THROW((void)parse_record("log.csv", text, {.columns = {{.name = "u", .in_file = "MAIN.u"}}}), InputError);
+}
+
 TEST(Dialect, ACutRowAtTheEndIsToldAsOne) {
   EXPECT_THAT(refusal_of("t,u,y\n0,1,2\n1,2,3\n2,3\n"), HasSubstr("--rows 1..2."));
 }

@@ -148,6 +148,14 @@ TEST(RecordCommand, WhatHoldsForAllRecordsStandsInTheParameterFile) {
   const auto run = bench.shell("hysteron run p.st --in log.csv --params tuned.toml --out out.csv --summary");
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("RMSE against"));
+  // A record of the inputs alone has no column for Y, and one of the simulator the names of the diagram.
+  bench.write("drive.csv", "x,MAIN.u\n0,0\n1,1\n2,0.5\n");
+  const auto driven = bench.shell("hysteron run p.st --in drive.csv --params tuned.toml --out out.csv");
+  EXPECT_EQ(driven.code, 0) << driven.err;
+  EXPECT_THAT(driven.err, HasSubstr("there is no column 3, which the parameter file names for Y"));
+  bench.write("simulated.csv", "x,U\n0,0\n1,1\n2,0.5\n");
+  EXPECT_EQ(bench.shell("hysteron run p.st --in simulated.csv --params tuned.toml --out out.csv").code, 0);
+  EXPECT_EQ(bench.shell("hysteron run p.st --in drive.csv --params tuned.toml --column Y=3 --out out.csv").code, 2);
   const auto shown = bench.shell("hysteron record log.csv --params p.toml --column U=z");
   EXPECT_EQ(shown.code, 0) << shown.err;
   EXPECT_THAT(shown.out, HasSubstr("\nU "));

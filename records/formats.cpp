@@ -43,11 +43,46 @@ constexpr auto formats = std::to_array<Format>({
     {"SQLite (ROS 2 bag)", [](std::string_view bytes, std::string_view ending) { return begins(bytes, "SQLite format 3\0"sv) || ending == "db3"; },
      nullptr, "open it in PlotJuggler and export the signals as CSV."},
     {"Excel workbook", [](std::string_view bytes, std::string_view ending) {
-       return ending == "xlsx" || ending == "xlsm" || ending == "ods" || ending == "xls" || begins(bytes, "\xD0\xCF\x11\xE0");
+       return ending == "xlsx" || ending == "xlsm" || ending == "ods" || (ending == "xls" && !begins(bytes, "<")) || begins(bytes, "\xD0\xCF\x11\xE0");
      },
      nullptr, "save the sheet as CSV UTF-8."},
+    {"NumPy archive", [](std::string_view bytes, std::string_view ending) { return begins(bytes, "PK\x03\x04") && ending == "npz"; }, nullptr,
+     "write it as text: in Python, log = numpy.load(\"log.npz\"), then numpy.savetxt as CSV; or give the arrays to hysteron in Python."},
     {"zip archive", [](std::string_view bytes, std::string_view) { return begins(bytes, "PK\x03\x04"); }, nullptr,
      "unpack it; a workbook has to be saved as CSV UTF-8."},
+    {"NumPy array", [](std::string_view bytes, std::string_view) { return begins(bytes, "\x93NUMPY"); }, nullptr,
+     "write it as text: in Python, numpy.savetxt(\"log.csv\", numpy.column_stack([t, u, y]), delimiter=\",\", header=\"t,u,y\", "
+     "comments=\"\"); or give the arrays to hysteron in Python."},
+    {"pickle of Python", [](std::string_view, std::string_view ending) { return ending == "pkl" || ending == "pickle"; }, nullptr,
+     "export it: in Python, pandas.read_pickle(\"log.pkl\").to_csv(\"log.csv\")."},
+    {"Arrow or Feather table", [](std::string_view bytes, std::string_view ending) { return begins(bytes, "ARROW1") || ending == "feather"; },
+     nullptr, "export it: in Python, pandas.read_feather(\"log.feather\").to_csv(\"log.csv\")."},
+    {"ULog of PX4", [](std::string_view bytes, std::string_view) { return begins(bytes, "ULog\x01\x12\x35"); }, nullptr,
+     "write its topics as CSV: ulog2csv log.ulg, of pyulog; or open it in PlotJuggler and export CSV."},
+    {"BLF of Vector", [](std::string_view bytes, std::string_view ending) { return begins(bytes, "LOGG") || ending == "blf"; }, nullptr,
+     "decode its signals with their DBC file, and export them as CSV or MDF: in CANalyzer, or by asammdf in Python."},
+    {"Access database", [](std::string_view bytes, std::string_view ending) {
+       return ending == "mdb" || ending == "accdb" || bytes.substr(0, 32).find("Standard Jet DB") != std::string_view::npos;
+     },
+     nullptr, "export the table as CSV: in Access, External Data, Export, Text File; or mdb-export FILE TABLE > log.csv."},
+    {"Keysight or Rigol waveform", [](std::string_view bytes, std::string_view ending) {
+       return begins(bytes, "AG10") || begins(bytes, "AG01") || begins(bytes, "RG01") || ending == "wdf" || ending == "wvf";
+     },
+     nullptr, "save the waveform as CSV on the oscilloscope."},
+    {"Saleae capture", [](std::string_view, std::string_view ending) { return ending == "sal" || ending == "logicdata"; }, nullptr,
+     "in Logic, File, Export Data, CSV."},
+    {"DIAdem or DEWESoft data", [](std::string_view, std::string_view ending) { return ending == "tdm" || ending == "tdx" || ending == "dxd" || ending == "d7d"; },
+     nullptr, "export the channels as CSV or text in the program that wrote it."},
+    {"compressed archive", [](std::string_view bytes, std::string_view) {
+       return begins(bytes, "7z\xBC\xAF") || begins(bytes, "BZh") || begins(bytes, "\xFD" "7zXZ") || begins(bytes, "\x28\xB5\x2F\xFD") || begins(bytes, "Rar!");
+     },
+     nullptr, "unpack it."},
+    {"web page", [](std::string_view bytes, std::string_view) {
+       const auto first = bytes.substr(0, 200);
+       return first.find("<html") != std::string_view::npos || first.find("<!DOCTYPE html") != std::string_view::npos ||
+              first.find("<HTML") != std::string_view::npos;
+     },
+     nullptr, "export the numbers as CSV; an .xls that is a web page is saved anew as CSV UTF-8 by the spreadsheet."},
     {"gzip archive", [](std::string_view bytes, std::string_view) { return begins(bytes, "\x1F\x8B"); }, nullptr,
      "unpack it: gunzip FILE."},
     {"WAV sound", [](std::string_view bytes, std::string_view) { return (begins(bytes, "RIFF") || begins(bytes, "RF64")) && begins(bytes, "WAVE", 8); },
@@ -64,6 +99,13 @@ constexpr auto formats = std::to_array<Format>({
      "export the numbers, not the picture, as CSV."},
     {"PDF", [](std::string_view bytes, std::string_view) { return begins(bytes, "%PDF"); }, nullptr,
      "export the numbers as CSV."},
+    {"JSON, an object in each line", [](std::string_view bytes, std::string_view) {
+       const auto end = bytes.find('\n');
+       const auto first = bytes.find_first_not_of(" \t\r\n");
+       return first != std::string_view::npos && bytes[first] == '{' && end != std::string_view::npos && end > first &&
+              bytes.substr(0, end).find_last_of('}') != std::string_view::npos && bytes.substr(end + 1, 1) == "{";
+     },
+     nullptr, "in Python, pandas.read_json(\"log.json\", lines=True).to_csv(\"log.csv\") writes what is read here."},
     {"JSON", [](std::string_view bytes, std::string_view ending) {
        const auto first = bytes.find_first_not_of(" \t\r\n");
        return first != std::string_view::npos && (bytes[first] == '{' || (bytes[first] == '[' && ending == "json"));

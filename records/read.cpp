@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -14,9 +16,12 @@
 #include "records/resample.hpp"
 #include "records/statistics.hpp"
 #include "records/table.hpp"
+#include "records/time/row_order.hpp"
+#include "records/time/split_time.hpp"
 #include "records/time/time_column.hpp"
 #include "records/time/time_grid.hpp"
 #include "records/time/time_unit.hpp"
+#include "records/uneven_record.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -51,7 +56,7 @@ std::size_t the_column(const Table& table, const ColumnName& wanted) {
 
 /// Gives the columns the names that are stated. A column that had the name before is passed over.
 void rename(Table& table, const ReadOptions& options) {
-  std::vector<std::size_t> found;
+  std::vector<std::optional<std::size_t>> found;
   for (const ColumnName& one : options.columns) {
     for (const ColumnName& other : options.columns) {
       if (&other < &one && equal_ignoring_case(other.name, one.name)) {
@@ -60,15 +65,24 @@ void rename(Table& table, const ReadOptions& options) {
                          "name one of them.");
       }
     }
-    found.push_back(the_column(table, one));
+    if (one.is_general && columns_called(table, one.in_file).empty()) {
+      table.notes.push_back(
+          fmt::format("there is no column {}, which the parameter file names for {}", one.in_file, one.name));
+      found.emplace_back();
+    } else {
+      found.emplace_back(the_column(table, one));
+    }
   }
   for (std::size_t k = 0; k < found.size(); ++k) {
+    if (!found[k]) {
+      continue;
+    }
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
-      if (i != found[k] && equal_ignoring_case(table.columns[i].name, options.columns[k].name)) {
+      if (i != *found[k] && equal_ignoring_case(table.columns[i].name, options.columns[k].name)) {
         table.columns[i].name += fmt::format(" ({})", i + 1);
       }
     }
-    TableColumn& column = table.columns[found[k]];
+    TableColumn& column = table.columns[*found[k]];
     column.in_file = column.name;
     column.name = options.columns[k].name;
     column.unit = options.columns[k].unit.empty() ? column.unit : options.columns[k].unit;
@@ -77,6 +91,35 @@ void rename(Table& table, const ReadOptions& options) {
 }
 
 // ---- time -----------------------------------------------------------------------------------------------------------
+
+/// Where most rows share their times with others, the clock is too coarse: the rows have to be counted.
+void refuse_coarse_clock(const Table& table, const Times& times, const Place& place) {
+  std::size_t changes = 0;
+  std::size_t first = 0;  // the first and the last row at which the clock goes on
+  std::size_t last = 0;
+  for (std::size_t k = 1; k < times.seconds.size(); ++k) {
+    if (times.seconds[k] != times.seconds[k - 1]) {
+      first = changes == 0 ? k : first;
+      last = k;
+      ++changes;
+    }
+  }
+  if (2 * (changes + 1) > times.seconds.size()) {
+    return;
+  }
+  const double span = times.seconds[last] - times.seconds[first];
+  const double rate = changes > 1 && span > 0.0 ? static_cast<double>(last - first) / span : 0.0;
+  throw InputError(
+      error::reversed_time, place,
+      fmt::format("{} rows have only {} time{}: the clock is coarser than the rows.", table.rows, changes + 1,
+                  changes == 0 ? "" : "s"),
+      rate > 0.0
+          ? fmt::format("count the rows, by the rate of the logger: --rate {}Hz, if these {:.4g} rows a second are "
+                        "even; or export the time with more digits.",
+                        rounded_text(rate), rate)
+          : std::string("count the rows, by the rate of the logger, such as --rate 1kHz; or export the time with "
+                        "more digits."));
+}
 
 [[noreturn]] void refuse_time(const Table& table, const Times& times, std::size_t rows_before) {
   const TimeFault& fault = *times.grid.fault;
@@ -90,12 +133,17 @@ void rename(Table& table, const ReadOptions& options) {
     const double last = times.seconds[fault.row - 1];
     const double now = times.seconds[fault.row];
     const auto [earlier, here] = distinct_texts(last, now, digits);
+    if (last == now) {
+      refuse_coarse_clock(table, times, place(fault.row));
+    }
     list.error(
         error::reversed_time, place(fault.row),
         last == now ? fmt::format("The time {} s stands in two rows.", here)
                     : fmt::format("The time runs back, from {} s to {} s.", earlier, here),
         last == now
-            ? "print the time with more digits, or remove the row that was written twice."
+            ? "print the time with more digits, or remove the row that was written twice; events of a simulation: "
+              "--resample hold, "
+              "and the later row counts."
             : fmt::format("read one part alone: --rows 1..{} or --rows {}..; a file of several records is several "
                           "files.",
                           rows_before + fault.row, rows_before + fault.row + 1),
@@ -144,7 +192,7 @@ std::optional<Diagnostic> fault_of(const Table& table, std::size_t index) {
     return Diagnostic{.number = error::text_for_number,
                       .place = column.place,
                       .cause = fmt::format("Column {} holds no numbers.", column.name),
-                      .mend = "name another column with --column."};
+                      .mend = std::string(another_column)};
   }
   return std::nullopt;
 }
@@ -201,14 +249,33 @@ void leave_out(const std::vector<std::size_t>& rows, std::vector<double>& values
   values.resize(kept);
 }
 
-Record record_of(Table table, const ReadOptions& options) {
+struct OrderedTimes {
+  Times times{};
+  bool settled = false;  ///< rows were moved or left out
+};
+OrderedTimes times_in_order(Table& table, const ReadOptions& options) {
+  join_split_times(table);
+  OrderedTimes result{.times = times_of(table, options)};
+  const std::optional<TimeFault>& fault = result.times.grid.fault;
+  if (result.times.own.empty() && fault && fault->reversed && settle_rows(table, result.times.seconds, options)) {
+    result = {.times = times_of(table, options), .settled = true};
+  }
+  return result;
+}
+
+enum class Uneven : std::uint8_t { Refused, Taken };
+
+Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven::Refused) {
   rename(table, options);
   if (table.source != nullptr) {
     table.source->names = names_of(table);
   }
-  Times times = times_of(table, options);
+  Times times = times_in_order(table, options).times;
   const bool resample = options.resampling != Resampling::None;
-  if (times.grid.fault && (!resample || times.grid.fault->reversed)) {
+  const bool is_faulty = times.grid.fault && (!resample || times.grid.fault->reversed);
+  if (is_faulty && uneven == Uneven::Taken) {
+    times.grid.sample_time = std::max(median_step(times.seconds), 0.0);
+  } else if (is_faulty) {
     refuse_time(table, times, options.first_row - 1);
   }
   std::vector<Column> columns;
@@ -224,7 +291,7 @@ Record record_of(Table table, const ReadOptions& options) {
   }
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     TableColumn& column = table.columns[i];
-    if (std::ranges::find(times.used, i) != times.used.end()) {
+    if (std::ranges::find(times.used, i) != times.used.end() || column.is_part_of_time) {
       continue;
     }
     const bool bridged = resample && column.is_gappy && column.missing.size() + 1 < table.rows;
@@ -243,6 +310,7 @@ Record record_of(Table table, const ReadOptions& options) {
     if (resample) {
       const auto own = std::ranges::find(times.own, i, &Times::Own::column);
       std::vector<double> at = own != times.own.end() ? own->seconds : times.seconds;
+      values.resize(at.size());  // a signal at a rate of its own has fewer rows
       if (bridged) {
         leave_out(column.missing, at);
         leave_out(column.missing, values);
@@ -289,6 +357,15 @@ Record record_of(Table table, const ReadOptions& options) {
   return record;
 }
 
+void refuse_short_range(const std::string& file, std::size_t rows, std::span<const double> seconds) {
+  if (rows < 2) {
+    throw InputError(error::record_too_short, {.file = file},
+                     fmt::format("The range holds {} of the rows, which go from {} s to {} s.", rows,
+                                 number_text(seconds.front()), number_text(seconds.back())),
+                     "give a range within the times of the record.");
+  }
+}
+
 }  // namespace
 
 Record read_table(const std::string& file, const TableReader& read, const ReadOptions& options) {
@@ -298,7 +375,17 @@ Record read_table(const std::string& file, const TableReader& read, const ReadOp
   // Rows outside of the range are not read at all, so that a fault there is none.
   Table whole = read(options);
   rename(whole, options);
-  const Times times = times_of(whole, options);
+  const auto [times, settled] = times_in_order(whole, options);
+  if (settled) {  // no rows of the file, one behind the other
+    ReadOptions all = options;
+    all.begin.reset();
+    all.end.reset();
+    const Record record = record_of(std::move(whole), all);
+    const RowRange rows = record.rows_between(options.begin.value_or(record.time().front()),
+                                              options.end.value_or(std::numeric_limits<double>::infinity()));
+    refuse_short_range(file, rows.size(), record.time());
+    return record.slice(rows);
+  }
   const double equal = 0.01 * times.grid.sample_time;
   std::size_t first = 0;
   while (first < times.seconds.size() && options.begin && times.seconds[first] < *options.begin - equal) {
@@ -308,12 +395,7 @@ Record read_table(const std::string& file, const TableReader& read, const ReadOp
   while (last < times.seconds.size() && (!options.end || times.seconds[last] < *options.end - equal)) {
     ++last;
   }
-  if (last < first + 2) {
-    throw InputError(error::record_too_short, {.file = file},
-                     fmt::format("The range holds {} of the rows, which go from {} s to {} s.", last - first,
-                                 number_text(times.seconds.front()), number_text(times.seconds.back())),
-                     "give a range within the times of the record.");
-  }
+  refuse_short_range(file, last - first, times.seconds);
   ReadOptions narrowed = options;
   narrowed.begin.reset();
   narrowed.end.reset();
@@ -333,6 +415,38 @@ Record parse_record(const std::string& file, std::string bytes, const ReadOption
   }
   return read_table(
       file, [&](const ReadOptions& how) { return format.read(file, bytes, how); }, options);
+}
+
+Record parse_uneven_record(const std::string& file, std::string bytes, const ReadOptions& options) {
+  const Format& format = format_of(file, bytes);
+  ReadOptions whole = options;
+  whole.begin.reset();
+  whole.end.reset();
+  whole.resampling = Resampling::None;
+  return record_of(format.read(file, std::move(bytes), whole), whole, Uneven::Taken);
+}
+
+TimeSurvey survey_of(std::span<const double> time) {
+  TimeSurvey result{.usual = median_step(time)};
+  double squares = 0.0;
+  std::size_t others = 0;
+  for (std::size_t k = 1; k < time.size(); ++k) {
+    const double step = time[k] - time[k - 1];
+    if (!(step > 0.0)) {
+      result.first_backward = result.backward++ == 0 ? k + 1 : result.first_backward;
+    } else if (step > 1.5 * result.usual) {
+      result.first_gap = result.gaps++ == 0 ? k : result.first_gap;
+      result.missing += static_cast<std::size_t>(std::max(1.0, std::min(std::round(step / result.usual) - 1.0, 1e15)));
+      result.longest_gap = std::max(result.longest_gap, step);
+    } else if (step < 0.5 * result.usual) {
+      ++result.close;
+    } else {
+      squares += (step - result.usual) * (step - result.usual);
+      ++others;
+    }
+  }
+  result.jitter = others > 0 ? std::sqrt(squares / static_cast<double>(others)) : 0.0;
+  return result;
 }
 
 Record read_record(const std::string& path, const ReadOptions& options) {

@@ -22,6 +22,9 @@ struct ColumnName {
   std::string name{};
   std::string in_file{};
   std::string unit{};
+  /// Said for many records, in a parameter file: a record without the column is read all the same, and may have one of
+  /// the diagram's own name.
+  bool is_general = false;
 };
 
 struct ReadOptions {

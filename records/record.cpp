@@ -63,13 +63,23 @@ const Column& Record::column(std::string_view name) const {
   if (const Column* const found = find(name)) {
     return *found;
   }
-  const auto known = names();
+  auto known = names();
+  for (const Unreadable& one : unreadable_) {
+    known.push_back(one.name);
+  }
   // MAIN.fbAxis.u for U: what a controller records has the path of its variable before the name.
   const auto ends_so = std::ranges::find_if(known, [&](const std::string& one) {
     return one.size() > name.size() && equal_ignoring_case(one.substr(one.size() - name.size()), name) &&
            std::string_view("._:/ ").find(one[one.size() - name.size() - 1]) != std::string_view::npos;
   });
-  std::string near = ends_so != known.end() ? *ends_so : std::string(nearest_name(name, known));
+  // u_mV and u (raw) for U: a unit or a remark behind the name.
+  const auto begins_so = std::ranges::find_if(known, [&](const std::string& one) {
+    return one.size() > name.size() && equal_ignoring_case(one.substr(0, name.size()), name) &&
+           std::string_view("_ (/").find(one[name.size()]) != std::string_view::npos;
+  });
+  std::string near = ends_so != known.end()     ? *ends_so
+                     : begins_so != known.end() ? *begins_so
+                                                : std::string(nearest_name(name, known));
   // An element of a vector: U_2 may be U[2], as generated code calls it; U[0] is not.
   if (const auto element = element_of(name)) {
     const auto flat = std::ranges::find_if(known, [&](const std::string& one) {

@@ -10,6 +10,7 @@
 
 #include "records/text/cell_value.hpp"
 #include "records/text/source_text.hpp"
+#include "records/text/stated_rate.hpp"
 #include "records/time/time_grid.hpp"
 #include "support/diagnostic.hpp"
 
@@ -27,6 +28,7 @@ struct TableColumn {
   std::vector<std::size_t> missing{};      ///< rows whose cell is empty or no finite number, rising
   bool is_gappy = false;                   ///< all that is wrong with it is missing
   bool has_values = false;                 ///< at least one of its cells is not empty
+  bool is_part_of_time = false;            ///< joined to the column of the time: its milliseconds
   std::vector<std::uint32_t> words{};      ///< of a column that names signals: which word of the dictionary
   std::vector<std::string> dictionary{};   ///< its words, in the order in which they come
   std::optional<Diagnostic> fault{};       ///< the first cell that is no value
@@ -40,7 +42,11 @@ struct Table {
   Place place{};                         ///< of the row of names
   std::shared_ptr<SourceText> source{};  ///< null where it was no text
   std::vector<std::string> notes{};      ///< what was understood that the file does not say outright
+  std::optional<StatedRate> stated{};    ///< what the head of a text says of its rate
 };
+
+/// The mend of a column that holds something else than numbers.
+inline constexpr std::string_view another_column = "name another column with --column.";
 
 [[nodiscard]] std::vector<std::string> names_of(const Table& table);
 

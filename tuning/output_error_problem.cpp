@@ -106,14 +106,17 @@ class Builder {
                          "declare one in VAR_OUTPUT, named as the record's column.");
     } else if (problem_.outputs.empty()) {
       const std::vector<std::string> names = names_of(outputs);
+      std::vector<std::string> columns = records_.empty() ? std::vector<std::string>() : records_.front().names();
+      for (std::size_t i = 0; !records_.empty() && i < records_.front().unreadable().size(); ++i) {
+        columns.push_back(records_.front().unreadable()[i].name);
+      }
       diagnostics_.error(
           error::no_measured_output, {.file = records_.empty() ? std::string() : records_.front().file()},
           fmt::format("No column bears the name of an output of {}: {}.", graph().name, fmt::join(names, ", ")),
-          records_.empty() ? "give a record."
-          : records_.front().names().empty()
-              ? "record an output beside the time: its only column is t."
-              : fmt::format("say which column holds it, as --column {}=NAME; the columns are {}.", names.front(),
-                            fmt::join(records_.front().names(), ", ")));
+          records_.empty()  ? "give a record."
+          : columns.empty() ? "record an output beside the time: its only column is t."
+                            : fmt::format("say which column holds it, as --column {}=NAME; the columns are {}.",
+                                          names.front(), fmt::join(columns, ", ")));
     }
   }
 

@@ -122,7 +122,7 @@ RecordOptions with_settings(RecordOptions options, const parameters::RecordSetti
       return equal_ignoring_case(trimmed(std::string_view(one).substr(0, one.find('='))), name);
     };
     if (std::ranges::none_of(options.columns, is_given)) {
-      options.columns.push_back(fmt::format("{}={}", name, value.text));
+      options.general_columns.push_back(fmt::format("{}={}", name, value.text));
     }
   }
   return options;
@@ -155,15 +155,18 @@ records::ReadOptions read_options(const RecordOptions& options, const Program* p
              "write how many rows a second has, such as --rate 1kHz, or the time of a row, 1ms.");
     }
   }
-  for (const std::string& one : options.columns) {
-    const auto equals = one.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == one.size()) {
-      refuse("--column", one, "write the name in the diagram and that in the file, such as --column U=MAIN.u.");
+  for (const auto* const columns : {&options.columns, &options.general_columns}) {
+    for (const std::string& one : *columns) {
+      const auto equals = one.find('=');
+      if (equals == std::string::npos || equals == 0 || equals + 1 == one.size()) {
+        refuse("--column", one, "write the name in the diagram and that in the file, such as --column U=MAIN.u.");
+      }
+      auto [in_file, unit] = name_and_unit(std::string_view(one).substr(equals + 1));
+      result.columns.push_back({.name = std::string(trimmed(std::string_view(one).substr(0, equals))),
+                                .in_file = std::move(in_file),
+                                .unit = std::move(unit),
+                                .is_general = columns == &options.general_columns});
     }
-    auto [in_file, unit] = name_and_unit(std::string_view(one).substr(equals + 1));
-    result.columns.push_back({.name = std::string(trimmed(std::string_view(one).substr(0, equals))),
-                              .in_file = std::move(in_file),
-                              .unit = std::move(unit)});
   }
   if (!options.decimal.empty()) {
     if (!equal_ignoring_case(options.decimal, "point") && !equal_ignoring_case(options.decimal, "comma")) {

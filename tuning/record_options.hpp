@@ -17,9 +17,10 @@ namespace hysteron {
 
 /// As they are written.
 struct RecordOptions {
-  std::string time{};                  ///< NAME or NAME[ms]
-  std::string rate{};                  ///< 1kHz, 1 ms
-  std::vector<std::string> columns{};  ///< U=MAIN.u
+  std::string time{};                          ///< NAME or NAME[ms]
+  std::string rate{};                          ///< 1kHz, 1 ms
+  std::vector<std::string> columns{};          ///< U=MAIN.u
+  std::vector<std::string> general_columns{};  ///< the same, from a parameter file: for records that have them
   std::string skip{};
   std::string range{};  ///< 2s..8s
   std::string rows{};   ///< 1..60

@@ -40,6 +40,13 @@ struct CellValue {
 /// Reads a cell. A comma in it is a decimal mark: where it separates cells, it stands in none but in quotes.
 [[nodiscard]] CellValue cell_value(std::string_view text);
 
+/// Reads a cell whose decimal mark is stated: the other mark then separates thousands, 2.664 and 1.234,5 where it is
+/// the comma. TwoMarks where it stands elsewhere than between groups of three digits.
+[[nodiscard]] CellValue number_with_mark(std::string_view text, char decimal);
+
+/// Whether the cell is a word or sign for a value that was not measured: -, OL, #VALUE!.
+[[nodiscard]] bool says_missing(std::string_view text);
+
 /// Whether the kind is one that a column of a record has rows of.
 [[nodiscard]] constexpr bool is_value(CellKind kind) {
   return kind != CellKind::Empty && kind != CellKind::Text;

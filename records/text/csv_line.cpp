@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "records/text/unit_text.hpp"
+#include "records/time/time_unit.hpp"
+#include "support/names.hpp"
 #include "support/trimmed.hpp"
 
 namespace hysteron::records {
@@ -85,6 +88,25 @@ std::size_t end_of_index(std::string_view cell) {
   return index ? close + 1 : 0;
 }
 
+/// V(u) and I(R1) are names of circuit simulators, V(mV) and I(A) a voltage and a current with their units.
+bool is_name_of_circuit(std::string_view name, std::string_view inner) {
+  const bool voltage = equal_ignoring_case(name, "v");
+  const bool current = equal_ignoring_case(name, "i");
+  return (voltage && !(is_known_unit(inner) && inner.ends_with('V'))) ||
+         (current && !(is_known_unit(inner) && inner.ends_with('A')));
+}
+
+/// The unit that ends a name, u_mV. Of one letter it would be a part of the name, and an angle may stand for a speed.
+std::string_view unit_of_suffix(std::string_view cell) {
+  const auto joint = cell.rfind('_');
+  const std::string_view unit =
+      joint == std::string_view::npos || joint == 0 ? std::string_view() : cell.substr(joint + 1);
+  const bool clear = unit.size() >= 2 && is_known_unit(unit) &&
+                     !is_one_of(unit, {"deg", "rad", "inc", "pu", "cd", "min", "sec"}) &&
+                     unit.find_first_of("0123456789") == std::string_view::npos && !time_unit(unit);
+  return clear ? unit : std::string_view();
+}
+
 }  // namespace
 
 HeaderName split_header(std::string_view cell) {
@@ -99,14 +121,22 @@ HeaderName split_header(std::string_view cell) {
   }
   if (cell.ends_with(')')) {
     if (const auto open = cell.rfind('(');
-        open != std::string_view::npos && open > 0 && may_begin_unit(cell[open + 1])) {
+        open != std::string_view::npos && open > 0 && may_begin_unit(cell[open + 1]) &&
+        !is_name_of_circuit(cell.substr(0, open), cell.substr(open + 1, cell.size() - open - 2))) {
       return with(open, open + 1, cell.size() - open - 2);
     }
   }
   if (const auto slash = cell.find(" / "); slash != std::string_view::npos && slash > 0) {
     return with(slash, slash + 3, std::string_view::npos);
   }
-  return {.name = std::string(cell)};
+  // u/mV, "u in mV" and "u, mV": a unit only where it is one.
+  for (const std::string_view joint : {" in ", ", ", "/"}) {
+    if (const auto at = cell.rfind(joint); at != std::string_view::npos && at > 0 && cell.find('/') >= at &&
+                                           !time_name(cell) && is_known_unit(cell.substr(at + joint.size()))) {
+      return with(at, at + joint.size(), std::string_view::npos);
+    }
+  }
+  return {.name = std::string(cell), .unit = std::string(unit_of_suffix(cell))};
 }
 
 }  // namespace hysteron::records

@@ -101,7 +101,7 @@ std::optional<std::string> from_windows_1252(std::string_view bytes) {
 /// The first byte that no table holds.
 std::size_t first_control(std::string_view text) {
   const auto found = std::ranges::find_if(text, [](char c) {
-    return c >= 0 && c < ' ' && c != '\n' && c != '\r' && c != '\t' && c != '\f' && c != '\x1A';
+    return c >= 0 && c < ' ' && c != '\n' && c != '\r' && c != '\t' && c != '\f' && c != '\v' && c != '\x1A';
   });
   return found == text.end() ? std::string_view::npos : static_cast<std::size_t>(found - text.begin());
 }
@@ -117,9 +117,30 @@ std::size_t first_control(std::string_view text) {
                    "export the record as CSV; a damaged file has to be saved anew.");
 }
 
-}  // namespace
+/// Old programs end lines by CR alone; a name in quotes may go over several lines, as in spreadsheets. Both keep the
+/// length of the text; a line end in a name becomes the vertical tab, which is a blank.
+void settle_line_ends(std::string& text) {
+  if (text.find('\n') == std::string::npos) {
+    std::ranges::replace(text, '\r', '\n');
+  }
+  constexpr std::size_t most = 4000;  // names stand at the top
+  for (std::size_t at = 0; at < std::min(most, text.size()); ++at) {
+    const bool opens =
+        text[at] == '"' && (at == 0 || std::string_view(",;\t\n|").find(text[at - 1]) != std::string_view::npos);
+    const auto closing = opens ? text.find('"', at + 1) : std::string::npos;
+    const bool closes =
+        closing != std::string::npos && closing - at <= 200 &&
+        (closing + 1 == text.size() || std::string_view(",;\t|\r\n").find(text[closing + 1]) != std::string_view::npos);
+    if (!closes) {
+      continue;
+    }
+    for (; at < closing; ++at) {
+      text[at] = text[at] == '\n' ? '\v' : text[at] == '\r' ? ' ' : text[at];
+    }
+  }
+}
 
-DecodedText decoded(const std::string& file, std::string bytes) {
+DecodedText decoded_bytes(const std::string& file, std::string bytes) {
   if (const auto order = utf16_order(bytes)) {
     DecodedText result{.text = from_utf16(bytes, *order), .encoding = "UTF-16"};
     if (result.text.starts_with(byte_order_mark)) {
@@ -145,6 +166,14 @@ DecodedText decoded(const std::string& file, std::string bytes) {
     refuse(file, bytes, bad);
   }
   return {.text = std::move(*text), .encoding = "Windows-1252"};
+}
+
+}  // namespace
+
+DecodedText decoded(const std::string& file, std::string bytes) {
+  DecodedText result = decoded_bytes(file, std::move(bytes));
+  settle_line_ends(result.text);
+  return result;
 }
 
 }  // namespace hysteron::records

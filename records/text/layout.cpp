@@ -4,14 +4,18 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include "records/text/cell_value.hpp"
 #include "records/text/channel_head.hpp"
+#include "records/text/names_above.hpp"
+#include "records/text/unit_text.hpp"
 #include "records/time/time_unit.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
+#include "support/trimmed.hpp"
 
 namespace hysteron::records {
 namespace {
@@ -21,6 +25,11 @@ constexpr std::size_t head_lines = 800;
 
 /// In the order of preference between equals: a comma may be a decimal mark, and a blank may be anything.
 constexpr std::array separators{';', '\t', '|', ',', ' '};
+
+/// The line below the names of a table for people: |---|---|, ---+---.
+bool is_rule(std::string_view line) {
+  return line.find("---") != std::string_view::npos && line.find_first_not_of("-|+=: \t\r") == std::string_view::npos;
+}
 
 /// A run of lines of the same shape.
 struct Block {
@@ -44,12 +53,13 @@ struct Block {
   }
 };
 
-/// Which cells hold a value.
-std::vector<bool> values_of(const std::vector<Cell>& cells) {
+/// Which cells hold a value. Between blanks, 0.35,1.05 is two of them.
+std::vector<bool> values_of(const std::vector<Cell>& cells, char separator) {
   std::vector<bool> values;
   values.reserve(cells.size());
   for (const Cell& cell : cells) {
-    values.push_back(is_value(cell_value(cell.text).kind));
+    const CellKind kind = cell_value(cell.text).kind;
+    values.push_back(is_value(kind) && !(separator == ' ' && kind == CellKind::TwoMarks));
   }
   return values;
 }
@@ -63,7 +73,7 @@ Block longest_block(const std::vector<Line>& head, char separator) {
       continue;
     }
     cut_line(head[i].text, separator, cells);
-    std::vector<bool> values = values_of(cells);
+    std::vector<bool> values = values_of(cells, separator);
     if (now.goes_on_with(values)) {
       ++now.rows;
     } else {
@@ -73,11 +83,6 @@ Block longest_block(const std::vector<Line>& head, char separator) {
     }
   }
   return now.score() > best.score() ? now : best;
-}
-
-bool begins_with_text(const std::vector<Cell>& cells) {
-  const auto first = std::ranges::find_if(cells, [](const Cell& cell) { return !cell.text.empty(); });
-  return first != cells.end() && !is_value(cell_value(first->text).kind);
 }
 
 /// Whether the nearest line above a block that is neither blank nor a remark has words in as many cells.
@@ -101,7 +106,7 @@ void take_earlier_rows(const std::vector<Line>& head, char separator, Block& blo
       continue;
     }
     cut_line(head[i].text, separator, cells);
-    const std::vector<bool> values = values_of(cells);
+    const std::vector<bool> values = values_of(cells, separator);
     if (!values.empty() && values.front() == block.values.front() && block.goes_on_with(values)) {
       block.first = i;
       return;
@@ -109,59 +114,14 @@ void take_earlier_rows(const std::vector<Line>& head, char separator, Block& blo
   }
 }
 
-std::string_view without_brackets(std::string_view text) {
-  const bool bracketed =
-      text.size() >= 2 && ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')'));
-  return bracketed ? text.substr(1, text.size() - 2) : text;
-}
-
-/// Units as oscilloscopes write them in words.
-std::string unit_of_word(std::string_view text) {
-  text = without_brackets(text);
-  struct Word {
-    std::string_view word, unit;
-  };
-  constexpr auto words = std::to_array<Word>({{"Volt", "V"},
-                                              {"Volts", "V"},
-                                              {"Ampere", "A"},
-                                              {"Amperes", "A"},
-                                              {"Amps", "A"},
-                                              {"Watt", "W"},
-                                              {"Degree", "deg"}});
-  const auto found = std::ranges::find_if(words, [&](const Word& one) { return equal_ignoring_case(one.word, text); });
-  return std::string(found == words.end() ? text : found->unit);
-}
-
-/// Whether a row states units: one cell is a unit of time or all are in brackets, and none is the name of a time.
-bool is_row_of_units(const std::vector<Cell>& cells) {
-  bool time = false;
-  bool bracketed = true;
-  for (const Cell& cell : cells) {
-    if (cell.text.empty() || cell.text == "-") {
-      continue;
-    }
-    const std::string_view bare = without_brackets(cell.text);
-    if (is_value(cell_value(cell.text).kind) || bare.size() > 16) {
-      return false;
-    }
-    time = time || time_unit(bare).has_value();
-    bracketed = bracketed && bare.size() != cell.text.size();
-  }
-  return time || (bracketed && !cells.empty() && !cells.front().text.empty());
-}
-
 /// Looks for names above the rows.
 class HeadReader {
  public:
   HeadReader(const SourceText& source, const std::vector<Line>& head, const Block& block, TextLayout& layout)
-      : source_(source),
-        head_(head),
-        cells_in_row_(block.values.size()),
-        layout_(layout),
-        at_(block.first),
-        first_row_(block.first) {}
+      : source_(source), head_(head), cells_in_row_(block.values.size()), layout_(layout), first_row_(block.first) {}
 
   void read() {
+    layout_.stated = stated_rate(head_, first_row_);
     if (const auto channels = channel_head(head_, first_row_, cells_in_row_, layout_.separator)) {
       for (const std::string& name : channels->names) {
         layout_.columns.push_back({.name = "t", .unit = channels->time_unit});
@@ -169,51 +129,64 @@ class HeadReader {
       }
       return;
     }
-    std::vector<Cell> cells;
-    if (!step_up(cells)) {
+    take_row_with_remark();
+    const std::vector<HeadLine> above = lines_above(head_, first_row_, layout_.separator);
+    if (above.empty()) {
+      refuse_transposed();
       take_names_of_comment();
       return;
     }
-    std::vector<Cell> above;
-    const std::size_t lower = at_;
-    if (lower > 0 && layout_.separator == ',' &&
-        (layout_.counted = counted_time(head_[lower - 1].text, head_[lower].text))) {
-      step_up(above);
-      take_names(above, at_);
-      take_units(cells);
+    if (above.size() > 1 && layout_.separator == ',' &&
+        (layout_.counted = counted_time(head_[above[1].line].text, head_[above[0].line].text))) {
+      take_names(above[1].cells, above[1].line);
+      take_units(above[0].cells);
       layout_.columns.front() = {.name = "time", .unit = "s", .cell = 0};
-    } else if (fits(cells) && is_row_of_units(cells) && step_up(above) && fits(above) && begins_with_text(above)) {
-      take_names(above, at_);
-      take_units(cells);
-    } else if (fits(cells) && begins_with_text(cells)) {
-      at_ = lower;
-      take_names(cells, lower);
-    } else {
-      refuse_rows_of_another_shape(cells, lower);
+      take_labels(above[1].line);
+      return;
+    }
+    const auto words = static_cast<std::size_t>(
+        std::ranges::find_if_not(above,
+                                 [&](const HeadLine& one) { return fits(one.cells) && begins_with_text(one.cells); }) -
+        above.begin());
+    if (words == 0) {
+      refuse_transposed();
+      refuse_rows_of_another_shape(above.front().cells, above.front().line);
       take_names_of_comment();
       return;
     }
-    take_labels();
+    const std::size_t names = row_of_names(std::span(above).first(words));
+    take_names(above[names].cells, above[names].line);
+    for (std::size_t i = names; i-- > 0;) {
+      if (states_units(above[i].cells)) {
+        take_units(above[i].cells);
+      } else if (is_name_of_index(above[i].cells)) {
+        layout_.columns.front().name = std::string(above[i].cells.front().text);
+      }
+    }
+    take_labels(above[names].line);
   }
 
  private:
-  /// The next line above that is neither blank nor a remark.
-  bool step_up(std::vector<Cell>& cells) {
-    while (at_ > 0) {
-      const Line& line = head_[--at_];
-      if (!is_blank(line.text, layout_.separator) && !is_comment(line.text, layout_.separator)) {
-        cut_line(line.text, layout_.separator, cells);
-        return true;
-      }
-    }
-    return false;
-  }
-
-  /// A row may end with a separator, or lack the remark that the head announces.
+  /// A row may end with a separator, lack the remark that the head announces, or begin with its number (R).
   [[nodiscard]] bool fits(const std::vector<Cell>& cells) const {
     const std::size_t n = cells.size();
     return n == cells_in_row_ || n + 1 == cells_in_row_ ||
            (n == cells_in_row_ + 1 && is_one_of(cells.back().text, {"", "comment"}));
+  }
+
+  /// LabVIEW puts a remark behind some rows: `0.000 0.1 0.3 begin` below a head that ends with Comment.
+  void take_row_with_remark() {
+    const std::vector<HeadLine> above = lines_above(head_, first_row_, layout_.separator);
+    const auto has_remark = [&](const std::vector<Cell>& cells) {
+      return cells.size() == cells_in_row_ + 1 && is_one_of(cells.back().text, {"comment"});
+    };
+    const bool is_row = !above.empty() && !begins_with_text(above.front().cells);
+    const bool announced = above.size() > (is_row ? 1U : 0U) && has_remark(above[is_row ? 1 : 0].cells);
+    layout_.may_end_with_remark = announced;
+    if (announced && is_row && above.front().cells.size() == cells_in_row_ + 1) {
+      first_row_ = above.front().line;
+      layout_.first_row = head_[first_row_].offset;
+    }
   }
 
   /// A row right above the rows that has other cells is no head: to pass over it would lose a sample, or its names.
@@ -235,19 +208,76 @@ class HeadReader {
                                        source_.place_of(head_[line]).line));
   }
 
+  /// `t,0,0.001,0.002` above `u,1,2,3`: the signals lie on their side.
+  void refuse_transposed() const {
+    constexpr std::size_t fewest_samples = 8;
+    std::vector<Cell> cells;
+    std::size_t rows = 0;
+    for (std::size_t i = first_row_; i < head_.size() && rows <= cells_in_row_; ++i) {
+      if (is_blank(head_[i].text, layout_.separator) || is_comment(head_[i].text, layout_.separator)) {
+        continue;
+      }
+      cut_line(head_[i].text, layout_.separator, cells);
+      ++rows;
+      if (cells.size() != cells_in_row_ || !begins_with_text(cells) || !is_value(cell_value(cells.back().text).kind)) {
+        return;
+      }
+    }
+    if (rows == 0 || cells_in_row_ <= fewest_samples || 4 * rows > cells_in_row_) {
+      return;
+    }
+    cut_line(head_[first_row_].text, layout_.separator, cells);
+    throw InputError(error::missing_header, source_.place_of(head_[first_row_]),
+                     fmt::format("Each row of the file is a signal: the first is {}, with {} numbers beside it.",
+                                 cells.front().text, cells_in_row_ - 1),
+                     "turn rows into columns: in Python, pandas.read_csv(\"log.csv\", header=None, index_col=0).T."
+                     "to_csv(\"turned.csv\", index=False).");
+  }
+
   void take_names(const std::vector<Cell>& cells, std::size_t line) {
     layout_.names = head_[line].offset;
     layout_.columns.assign(cells_in_row_, {});
+    const std::size_t shift =
+        cells.size() + 1 == cells_in_row_ && !ends_empty() ? shift_by_number(line, cells.size()) : 0;
     for (std::size_t c = 0; c < std::min(cells.size(), cells_in_row_); ++c) {
-      HeaderName found = split_header(cells[c].text);
-      layout_.columns[c] = {.name = std::move(found.name), .unit = unit_of_word(found.unit), .cell = c};
+      std::string text(cells[c].text);
+      std::ranges::replace(text, '\v', ' ');  // a name over several lines
+      HeaderName found = split_header(trimmed(text));
+      layout_.columns[c + shift] = {.name = std::move(found.name), .unit = unit_of_word(found.unit), .cell = c};
     }
+  }
+
+  /// Whether the first row ends with a separator.
+  [[nodiscard]] bool ends_empty() const {
+    std::vector<Cell> cells;
+    cut_line(head_[first_row_].text, layout_.separator, cells);
+    return cells.back().text.empty();
+  }
+
+  /// R writes the number of each row before it, and no name for it. A row that begins otherwise lacks a name.
+  [[nodiscard]] std::size_t shift_by_number(std::size_t line, std::size_t names) {
+    std::vector<Cell> cells;
+    double before = 0.0;
+    for (std::size_t i = first_row_; i < std::min(first_row_ + 3, head_.size()); ++i) {
+      cut_line(head_[i].text, layout_.separator, cells);
+      const CellValue number = cells.empty() ? CellValue{} : cell_value(cells.front().text);
+      const bool counts = number.kind == CellKind::Number && (i == first_row_ || number.number == before + 1.0);
+      if (!counts) {
+        throw InputError(error::ragged_row, source_.place_of(head_[first_row_]),
+                         fmt::format("The row has {} cells where the {} names in line {} are for one less.",
+                                     cells_in_row_, names, source_.place_of(head_[line]).line),
+                         "give every column a name, and a number in every row.");
+      }
+      before = number.number;
+    }
+    layout_.notes.push_back("each row begins with its number, which has no name");
+    return 1;
   }
 
   void take_units(const std::vector<Cell>& cells) {
     for (std::size_t c = 0; c < std::min(cells.size(), cells_in_row_); ++c) {
-      if (layout_.columns[c].unit.empty() && cells[c].text != "-") {
-        layout_.columns[c].unit = unit_of_word(cells[c].text);
+      if (layout_.columns[c].unit.empty() && cells[c].text != "-" && !(c == 0 && is_key_of_units(cells[c].text))) {
+        layout_.columns[c].unit = unit_of_word(without_unit_key(cells[c].text));
       }
     }
   }
@@ -256,7 +286,7 @@ class HeadReader {
   void take_names_of_comment() {
     for (std::size_t line = first_row_; line > 0;) {
       std::string_view text = head_[--line].text;
-      if (is_blank(text, layout_.separator)) {
+      if (is_blank(text, layout_.separator) || is_rule(text)) {
         continue;
       }
       if (!is_comment(text, layout_.separator)) {
@@ -276,22 +306,36 @@ class HeadReader {
     }
   }
 
-  /// What the head says of the columns elsewhere: names that the user gave to channels, and units.
-  void take_labels() {
+  /// What the head says of the columns elsewhere: names that the user gave to channels, and units, in the order of the
+  /// columns; where each channel has times of its own, in the order of the channels.
+  void take_labels(std::size_t line) {
+    std::vector<std::size_t> channels;
+    for (std::size_t c = 1; c < cells_in_row_; ++c) {
+      if (!time_name(layout_.columns[c].name)) {
+        channels.push_back(c);
+      }
+    }
+    const bool own_times = channels.size() + 1 < cells_in_row_;
     std::vector<Cell> cells;
-    while (step_up(cells)) {
-      if (cells.size() < cells_in_row_ || begins_with_text(cells) == false) {
+    while (line > 0) {
+      const std::string_view text = head_[--line].text;
+      if (is_blank(text, layout_.separator) || is_comment(text, layout_.separator)) {
         continue;
       }
-      const bool labels = is_one_of(cells.front().text, {"label", "labels", "channel name", "channel names"});
-      const bool units = is_one_of(cells.front().text, {"vertical units", "units", "unit", "y_unit_label", "einheit"});
-      for (std::size_t c = 1; (labels || units) && c < cells_in_row_; ++c) {
-        TextLayout::Name& column = layout_.columns[c];
-        if (labels && !cells[c].text.empty()) {
-          layout_.notes.push_back(fmt::format("column {} is called {}, by its label", column.name, cells[c].text));
-          column.name = cells[c].text;
+      cut_line(text, layout_.separator, cells);
+      const bool labels = is_one_of(cells.front().text,
+                                    {"label", "labels", "channel name", "channel names", "tracename", "trace name"});
+      const bool units = is_one_of(cells.front().text, {"vertical units", "y_unit_label", "vunit"}) ||
+                         is_key_of_units(cells.front().text);
+      for (std::size_t k = 0; (labels || units) && k < channels.size(); ++k) {
+        TextLayout::Name& column = layout_.columns[channels[k]];
+        const std::size_t cell = own_times ? k + 1 : channels[k];
+        const std::string_view said = cell < cells.size() ? cells[cell].text : std::string_view();
+        if (labels && !said.empty()) {
+          layout_.notes.push_back(fmt::format("column {} is called {}, by its label", column.name, said));
+          column.name = said;
         } else if (units && column.unit.empty()) {
-          column.unit = unit_of_word(cells[c].text);
+          column.unit = unit_of_word(said);
         }
       }
     }
@@ -301,7 +345,6 @@ class HeadReader {
   const std::vector<Line>& head_;
   std::size_t cells_in_row_;
   TextLayout& layout_;
-  std::size_t at_;
   std::size_t first_row_;
 };
 
@@ -325,7 +368,7 @@ bool is_comment(std::string_view line, char separator) {
   }
   const std::string_view text = line.substr(first);
   return text.front() == '#' || text.front() == '%' || text.starts_with("//") ||
-         (text.front() == ';' && separator != ';');
+         (text.front() == ';' && separator != ';') || is_rule(text);
 }
 
 TextLayout layout_of(const SourceText& source, std::size_t skip) {

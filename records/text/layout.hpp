@@ -12,6 +12,7 @@
 
 #include "records/text/counted_time.hpp"
 #include "records/text/source_text.hpp"
+#include "records/text/stated_rate.hpp"
 
 namespace hysteron::records {
 
@@ -27,6 +28,8 @@ struct TextLayout {
   };
   std::vector<Name> columns{};           ///< as many as cells; none where there are no names
   std::optional<CountedTime> counted{};  ///< what the first column counts
+  std::optional<StatedRate> stated{};    ///< what the head says of the rate
+  bool may_end_with_remark = false;      ///< a row may have one cell more than the columns
   std::vector<std::string> notes{};      ///< what was understood and left out
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -15,8 +16,11 @@
 namespace hysteron::records {
 namespace {
 
-constexpr std::array<std::string_view, 5> names_of_signals{"VarName", "_field", "TagName", "variable", "signal"};
-constexpr std::array<std::string_view, 4> names_of_values{"VarValue", "_value", "value", "Value"};
+/// Of WinCC, InfluxDB, Wonderware, Kepware, Grafana, Home Assistant and pandas.
+constexpr auto names_of_signals =
+    std::to_array<std::string_view>({"VarName", "_field", "TagName", "tag", "variable", "signal", "_NAME", "name",
+                                     "series", "entity_id", "metric", "channel"});
+constexpr auto names_of_values = std::to_array<std::string_view>({"VarValue", "_value", "value", "vValue", "state"});
 
 template <class Predicate>
 std::optional<std::size_t> column_where(const Table& table, const Predicate& is_it) {
@@ -33,9 +37,16 @@ std::optional<std::size_t> time_of(Table& table) {
     table.columns[*in_days].unit = "1e-6 d";
     return in_days;
   }
-  return column_where(table, [](const TableColumn& one) {
+  // A range that was asked for, _start and _stop of InfluxDB, stands in each row.
+  const auto stands = [](const TableColumn& one) {
+    return one.stamps.size() > 1 && one.stamps.front().whole == one.stamps.back().whole &&
+           one.stamps.front().fraction == one.stamps.back().fraction;
+  };
+  const auto is_time = [](const TableColumn& one) {
     return one.kind == CellKind::DateTime || (one.kind == CellKind::Number && time_name(one.name));
-  });
+  };
+  const auto moving = column_where(table, [&](const TableColumn& one) { return is_time(one) && !stands(one); });
+  return moving ? moving : column_where(table, is_time);
 }
 
 }  // namespace
@@ -51,7 +62,10 @@ Table widened(Table table) {
     return is_one_of(one.name, names_of_values) && one.kind == CellKind::Number;
   });
   const auto time = names && values ? time_of(table) : std::nullopt;
-  if (!time || table.columns[*time].stamps.size() != table.rows) {
+  // A column "name" may name the measurement, one for all rows.
+  const bool names_many = names && (table.columns[*names].dictionary.size() > 1 ||
+                                    !equal_ignoring_case(table.columns[*names].name, "name"));
+  if (!time || !names_many || table.columns[*time].stamps.size() != table.rows) {
     return table;
   }
   const TableColumn& of_names = table.columns[*names];
@@ -65,18 +79,30 @@ Table widened(Table table) {
     signals[s].has_values = true;
     signals[s].place = of_names.place;
   }
+  const std::vector<Stamp> stamps = std::move(of_time.stamps);
+  const std::vector<double> numbers = std::move(of_time.values);
   of_time.stamps.clear();
   of_time.values.clear();
-  std::vector<std::vector<bool>> has(signals.size());
+  // Each signal may stand in a block of its own: the rows are taken in the order of their times.
+  const auto earlier = [&](const Stamp& a, const Stamp& b) {
+    return a.whole != b.whole ? a.whole < b.whole : a.fraction < b.fraction;
+  };
+  std::vector<std::size_t> rows;
   for (std::size_t row = 0; row < table.rows; ++row) {
-    const Stamp& now = table.columns[*time].stamps[row];
+    if (!of_names.dictionary[of_names.words[row]].starts_with("$RT_")) {  // WinCC: the archive was switched on or off
+      rows.push_back(row);
+    }
+  }
+  std::ranges::stable_sort(rows, [&](std::size_t a, std::size_t b) { return earlier(stamps[a], stamps[b]); });
+  std::vector<std::vector<bool>> has(signals.size());
+  for (const std::size_t row : rows) {
+    const Stamp& now = stamps[row];
     const std::size_t signal = of_names.words[row];
-    const bool same = !of_time.stamps.empty() && of_time.stamps.back().whole == now.whole &&
-                      of_time.stamps.back().fraction == now.fraction && !has[signal].back();
+    const bool same = !of_time.stamps.empty() && !earlier(of_time.stamps.back(), now) && !has[signal].back();
     if (!same) {
       of_time.stamps.push_back(now);
       if (of_time.kind == CellKind::Number) {
-        of_time.values.push_back(table.columns[*time].values[row]);
+        of_time.values.push_back(numbers[row]);
       }
       for (std::size_t s = 0; s < signals.size(); ++s) {
         signals[s].values.push_back(0.0);
@@ -105,7 +131,9 @@ Table widened(Table table) {
   }
   result.columns.push_back(std::move(of_time));
   for (TableColumn& signal : signals) {
-    result.columns.push_back(std::move(signal));
+    if (!signal.name.starts_with("$RT_")) {
+      result.columns.push_back(std::move(signal));
+    }
   }
   result.notes.push_back(fmt::format("each row holds one value: {} names the signals", of_names.name));
   return result;

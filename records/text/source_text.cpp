@@ -21,10 +21,12 @@ Line SourceText::line_at(std::size_t offset) const {
 
 Place SourceText::place_of(const Line& line) const {
   const auto before = std::string_view(text).substr(0, line.offset);
-  return {.file = file,
-          .line = static_cast<std::uint32_t>(std::count(before.begin(), before.end(), '\n')) + 1,
-          .column = 1,
-          .length = static_cast<std::uint32_t>(std::max<std::size_t>(1, character_count(line.text)))};
+  return {
+      .file = file,
+      .line =
+          static_cast<std::uint32_t>(std::ranges::count_if(before, [](char c) { return c == '\n' || c == '\v'; })) + 1,
+      .column = 1,
+      .length = static_cast<std::uint32_t>(std::max<std::size_t>(1, character_count(line.text)))};
 }
 
 Place SourceText::place_of(const Line& line, const Cell& cell) const {

@@ -54,7 +54,9 @@ class Reader {
     }
     for (std::size_t i = 0; i < table_.columns.size(); ++i) {
       table_.columns[i].has_values = seen_[i];
+      tell_words(i);
     }
+    table_.stated = layout_.stated;
     table_.source = std::move(source_);
     return widened(std::move(table_));
   }
@@ -91,12 +93,12 @@ class Reader {
                            "The name of the column holds a quote or a control character.",
                            "use letters, digits and _ in the names of columns, as a diagram does.");
       }
-      const std::optional<TimeName> time = time_name(column.name);
+      const std::optional<TimeName> time = time_name(without_number(column.name));
       const bool names_next = c + 1 < layout_.columns.size() && is_time_of(column.name, layout_.columns[c + 1].name);
       const bool may_be_time = layout_.columns.empty() || time || names_next || time_unit(column.unit) ||
                                (!options_.time.empty() && (equal_ignoring_case(column.name, options_.time) ||
                                                            options_.time == std::to_string(c + 1)));
-      keeps_stamps_.push_back(may_be_time);
+      keeps_stamps_.push_back(may_be_time || time_unit(last_word(column.name)).has_value());
       table_.columns.push_back(std::move(column));
     }
     stop_on_errors();
@@ -123,7 +125,11 @@ class Reader {
         read_row(line);
       }
     }
-    if (stray_) {
+    if (repeated_names_ > 0) {
+      table_.notes.push_back(fmt::format("the row of names stands {} more between the rows, and was passed over",
+                                         counted(repeated_names_, "time")));
+    }
+    if (stray_ && stray_->text != "\x1A") {  // the end of a file of DOS
       table_.notes.push_back(
           fmt::format("the end of the file, from \"{}\" on, is no part of the record", stray_->text.substr(0, 40)));
     }
@@ -133,14 +139,22 @@ class Reader {
     cut_line(line.text, layout_.separator, cells_);
     const bool ends_with_separator = cells_.size() == layout_.cells + 1 && cells_.back().text.empty();
     const bool lacks_last_empty = cells_.size() + 1 == layout_.cells && !seen_.back();
-    if (ends_with_separator) {
+    const bool ends_with_remark = cells_.size() == layout_.cells + 1 && layout_.may_end_with_remark;
+    if (ends_with_separator || ends_with_remark) {
       cells_.pop_back();
     } else if (lacks_last_empty) {
       cells_.push_back({.offset = line.text.size()});
     }
     const bool any_value =
         std::ranges::any_of(cells_, [&](const Cell& cell) { return is_value(cell_value(cell.text).kind); });
-    if (!any_value || (cells_.size() < layout_.cells && cells_.size() == 1 && !begins_with_number())) {
+    if (repeats_names(line)) {
+      ++repeated_names_;
+      return;
+    }
+    // A summary below the record, "Mean,0.1,0.3", is none of its rows.
+    const bool summary = (blank_ || stray_) && !begins_with_value() && table_.columns.front().kind != CellKind::Text &&
+                         seen_.front() && !is_missing(cells_.front().text);
+    if (!any_value || summary || (cells_.size() < layout_.cells && !begins_with_value())) {
       stray_ = stray_ ? stray_ : line;
       return;
     }
@@ -167,8 +181,15 @@ class Reader {
     }
   }
 
-  [[nodiscard]] bool begins_with_number() const {
+  [[nodiscard]] bool begins_with_value() const {
     return !cells_.empty() && is_value(cell_value(cells_.front().text).kind);
+  }
+
+  static bool is_missing(std::string_view text) { return text.empty() || says_missing(text); }
+
+  /// Exports that were put one behind the other repeat the row of names.
+  [[nodiscard]] bool repeats_names(const Line& line) const {
+    return layout_.names && row_ > 0 && line.text == source_->line_at(*layout_.names).text;
   }
 
   void refuse_stray(const Line& line) {
@@ -182,20 +203,32 @@ class Reader {
   void refuse_ragged(const Line& line) {
     const std::size_t named = layout_.columns.empty() ? layout_.cells : layout_.columns.size();
     const bool decimal_commas = layout_.separator == ',' && cells_.size() == 2 * named;
-    diagnostics_.error(error::ragged_row, source_->place_of(line),
-                       fmt::format("The row has {} where {} {}.", counted(cells_.size(), "cell"),
-                                   layout_.names ? "the header names" : "the first row has",
-                                   counted(named, layout_.names ? "column" : "cell")),
-                       decimal_commas ? "write decimal points, or separate the columns by semicolons."
-                                      : "write one number for each column of the header, and no separator at the end.");
+    diagnostics_.error(
+        error::ragged_row, source_->place_of(line),
+        fmt::format("The row has {} where {} {}.", counted(cells_.size(), "cell"),
+                    layout_.names ? "the header names" : "the first row has",
+                    counted(named, layout_.names ? "column" : "cell")),
+        decimal_commas ? "write decimal points, or separate the columns by semicolons." : mend_of_ragged(line));
+  }
+
+  /// A record that was cut while it was written ends with a part of a row.
+  [[nodiscard]] std::string mend_of_ragged(const Line& line) const {
+    const bool last =
+        std::string_view(source_->text).find_first_not_of(" \t\r\n\x1A", line.next) == std::string_view::npos;
+    if (last && row_ > 1 && cells_.size() < layout_.cells) {
+      return fmt::format("if the end of the record is cut, read the rows before it: --rows 1..{}.", row_);
+    }
+    const std::string first_part =
+        row_ > 1 ? fmt::format("; or read the rows before it: --rows 1..{}", row_) : std::string();
+    return "write one number for each column of the header, and no separator at the end" + first_part + ".";
   }
 
   // ---- cells ------------------------------------------------------------------------------------------------------
 
   void take_cell(const Line& line, const Cell& cell, std::size_t index) {
     TableColumn& column = table_.columns[index];
-    const CellValue value = cell_value(cell.text);
-    if (!seen_[index] && value.kind != CellKind::Empty) {
+    const CellValue value = options_.decimal ? number_with_mark(cell.text, *options_.decimal) : cell_value(cell.text);
+    if (!seen_[index] && value.kind != CellKind::Empty && !says_missing(cell.text)) {
       seen_[index] = true;
       const bool holds_numbers =
           value.kind == CellKind::NotFinite || value.kind == CellKind::OutOfRange || value.kind == CellKind::TwoMarks;
@@ -228,7 +261,7 @@ class Reader {
       return;
     }
     if (value.kind == CellKind::Number) {
-      check_mark(column, line, cell, value, index);
+      check_mark(line, cell, value, index);
       if (!value.unit.empty() && value.unit != column.unit && !column.fault) {
         column.fault = Diagnostic{.number = error::text_for_number,
                                   .place = source_->place_of(line, cell),
@@ -246,12 +279,7 @@ class Reader {
   }
 
   /// One column has one decimal mark, and so has the file: where both are found, one of them separates thousands.
-  void check_mark(TableColumn& column, const Line& line, const Cell& cell, const CellValue& value, std::size_t index) {
-    if (options_.decimal &&
-        ((value.has_comma && *options_.decimal == '.') || (value.has_point && *options_.decimal == ','))) {
-      fault(column, line, cell, {.kind = CellKind::TwoMarks});
-      return;
-    }
+  void check_mark(const Line& line, const Cell& cell, const CellValue& value, std::size_t index) {
     if (value.has_point) {
       pointed_.resize(layout_.cells);
       Pointed& points = pointed_[index];
@@ -275,9 +303,23 @@ class Reader {
       diagnostics_.error(error::ambiguous_decimal_mark, source_->place_of(line, cell),
                          fmt::format("{} has a decimal {}, an earlier number has a decimal {}.", cell.text,
                                      value.has_comma ? "comma" : "point", value.has_comma ? "point" : "comma"),
-                         "write all numbers with the same decimal mark, and without separators between thousands.",
+                         mend_of_two_marks(cell.text, other->second.text),
                          {{.place = source_->place_of(other->first, other->second), .text = "the earlier number"}});
     }
+  }
+
+  /// 1,052 beside 0.001: what cannot separate thousands is the decimal mark.
+  static std::string mend_of_two_marks(std::string_view one, std::string_view other) {
+    const auto is_thousands = [](std::string_view text) {
+      return number_with_mark(text, text.find('.') != std::string_view::npos ? ',' : '.').kind == CellKind::Number;
+    };
+    const bool one_has_point = one.find('.') != std::string_view::npos;
+    const bool points = is_thousands(one_has_point ? one : other);
+    const bool commas = is_thousands(one_has_point ? other : one);
+    return points && commas ? "if points separate thousands, say --decimal comma; if commas do, say --decimal point."
+           : points         ? "if points separate thousands, say --decimal comma."
+           : commas         ? "if commas separate thousands, say --decimal point."
+                            : "write all numbers with the same decimal mark.";
   }
 
   /// 2.664, 12.345: three digits behind the point, and no zero alone before it.
@@ -306,7 +348,7 @@ class Reader {
           .place = source_->place_of(line, cell),
           .cause = fmt::format("{} in column {} could be read in two ways: the point may separate thousands, as in {}.",
                                cell.text, table_.columns[i].name, without),
-          .mend = "say which: --decimal point; else write the numbers without separators between thousands."};
+          .mend = "say which: --decimal comma, and points separate thousands; or --decimal point."};
     }
   }
 
@@ -326,10 +368,28 @@ class Reader {
                                        number_text(layout_.counted->start), number_text(layout_.counted->increment)));
   }
 
+  /// What a column of words begins with, for those who ask for it.
+  void tell_words(std::size_t index) {
+    TableColumn& column = table_.columns[index];
+    if (column.kind == CellKind::Text && !column.fault && first_cells_[index]) {
+      const auto& [line, cell] = *first_cells_[index];
+      column.fault =
+          Diagnostic{.number = error::text_for_number,
+                     .place = column.place,
+                     .cause = fmt::format("Column {} holds no numbers: it begins with \"{}\".", column.name, cell.text),
+                     .mend = is_hexadecimal(cell.text) ? mend_of_word(cell.text) : std::string(another_column)};
+    }
+  }
+
+  static bool is_hexadecimal(std::string_view word) {
+    return word.starts_with("0x") || word.starts_with("0X") || word.starts_with("16#");
+  }
+
   static std::string mend_of_word(std::string_view word) {
-    if (word.size() > 2 && word.front() == '0' && (word[1] == 'x' || word[1] == 'X')) {
+    if (is_hexadecimal(word)) {
       std::uint64_t value = 0;
-      const auto [end, problem] = std::from_chars(word.data() + 2, word.data() + word.size(), value, 16);
+      const std::size_t prefix = word.starts_with("16#") ? 3 : 2;
+      const auto [end, problem] = std::from_chars(word.data() + prefix, word.data() + word.size(), value, 16);
       if (problem == std::errc{} && end == word.data() + word.size()) {
         return fmt::format("it is hexadecimal: write {}, as all of the column in decimal digits.", value);
       }
@@ -347,7 +407,7 @@ class Reader {
   }
 
   void fault(TableColumn& column, const Line& line, const Cell& cell, const CellValue& value) {
-    const bool missing = value.kind == CellKind::Empty || value.kind == CellKind::NotFinite;
+    const bool missing = value.kind == CellKind::Empty || value.kind == CellKind::NotFinite || says_missing(cell.text);
     if (missing) {
       column.missing.push_back(source_->rows.size() - 1);
     }
@@ -357,6 +417,8 @@ class Reader {
     }
     const std::string cut = row_ > 2 ? fmt::format("read the rows before it: --rows 1..{}", row_ - 1)
                                      : fmt::format("read the rows behind it: --rows {}..", row_ + 1);
+    const std::string bridged =
+        cut + "; where the signal has a rate of its own, bring it to the others: --resample hold, or linear.";
     Diagnostic found{.place = source_->place_of(line, cell)};
     switch (value.kind) {
       case CellKind::NotFinite:
@@ -374,13 +436,15 @@ class Reader {
         found.cause = options_.decimal ? fmt::format("{} in column {} has another decimal mark than --decimal states.",
                                                      cell.text, column.name)
                                        : fmt::format("{} has more than one decimal mark.", cell.text);
-        found.mend = "write numbers without separators between thousands.";
+        found.mend = options_.decimal ? "write numbers without separators between thousands."
+                     : cell.text.rfind(',') < cell.text.rfind('.')
+                         ? "if commas separate thousands, say --decimal point."
+                         : "if points separate thousands, say --decimal comma.";
         break;
       case CellKind::Empty:
         found.number = error::text_for_number;
         found.cause = fmt::format("Column {} has no number in this row.", column.name);
-        found.mend =
-            cut + "; where the signal has a rate of its own, bring it to the others: --resample hold, or linear.";
+        found.mend = bridged;
         break;
       case CellKind::Number: {  // the column began with something else
         const auto& [first_line, first_cell] = *first_cells_[static_cast<std::size_t>(&column - table_.columns.data())];
@@ -392,8 +456,10 @@ class Reader {
       }
       default:
         found.number = error::text_for_number;
-        found.cause = fmt::format("\"{}\" in column {} is no number.", cell.text, column.name);
-        found.mend = mend_of_word(cell.text);
+        found.cause = missing
+                          ? fmt::format("Column {} holds \"{}\" here: no value was measured.", column.name, cell.text)
+                          : fmt::format("\"{}\" in column {} is no number.", cell.text, column.name);
+        found.mend = missing ? bridged : mend_of_word(cell.text);
     }
     column.fault = std::move(found);
   }
@@ -409,6 +475,7 @@ class Reader {
   std::size_t row_ = 0;     ///< of numbers, from 1 on, those that are left out among them
   std::vector<std::optional<std::pair<Line, Cell>>> first_cells_;  ///< by column: the cell that has told it
   std::optional<Line> blank_;
+  std::size_t repeated_names_ = 0;
   std::optional<Line> stray_;  ///< text behind the rows: the end of the file, unless rows follow
   struct Pointed {
     std::size_t count = 0;  ///< numbers with a point

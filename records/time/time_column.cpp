@@ -16,6 +16,7 @@
 #include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "support/option_words.hpp"
+#include "support/rounded_text.hpp"
 
 namespace hysteron::records {
 namespace {
@@ -32,13 +33,20 @@ double raw_value(const Stamp& stamp) {
   return static_cast<double>(stamp.whole) + stamp.fraction;
 }
 
+/// Of a signal at a rate of its own the rows end earlier: how many there are; all where a cell is missing in between.
+std::size_t own_rows(const TableColumn& column, std::size_t rows) {
+  const std::size_t missing = column.missing.size();
+  return column.is_gappy && missing > 0 && column.missing.front() == rows - missing ? rows - missing : rows;
+}
+
 /// Whether the times of a column go up from row to row; of days, whether they never go back.
 bool rises(const TableColumn& column) {
-  if (column.stamps.size() < 2 || column.fault) {
+  const std::size_t rows = own_rows(column, column.stamps.size());
+  if (rows < 2 || (column.fault && rows == column.stamps.size())) {
     return false;
   }
   const bool may_rest = column.kind == CellKind::Date || column.kind == CellKind::Clock;
-  for (std::size_t k = 1; k < column.stamps.size(); ++k) {
+  for (std::size_t k = 1; k < rows; ++k) {
     const Stamp& before = column.stamps[k - 1];
     const Stamp& now = column.stamps[k];
     const double step = static_cast<double>(now.whole - before.whole) + (now.fraction - before.fraction);
@@ -56,9 +64,24 @@ bool same_times(const TableColumn& a, const TableColumn& b) {
          });
 }
 
-/// t_u beside u, u_time beside u: the times of one signal.
+/// t_u beside u, u_time beside u: the times of one signal. So are t1 and t2 where each has one signal behind it.
 bool is_time_of_signal(const Table& table, std::size_t index) {
   return index + 1 < table.columns.size() && is_time_of(table.columns[index].name, table.columns[index + 1].name);
+}
+
+bool has_numbered_times(const Table& table) {
+  const std::size_t count = table.columns.size();
+  if (count < 4 || count % 2 != 0) {
+    return false;
+  }
+  for (std::size_t i = 0; i < count; i += 2) {
+    const std::string_view base = without_number(table.columns[i].name);
+    if (!time_name(base) || !equal_ignoring_case(base, without_number(table.columns[0].name)) ||
+        time_name(table.columns[i + 1].name)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 std::vector<std::string> names_of(const Table& table, const std::vector<std::size_t>& columns) {
@@ -72,15 +95,23 @@ std::vector<std::string> names_of(const Table& table, const std::vector<std::siz
 
 std::vector<std::size_t> candidates(const Table& table) {
   std::vector<std::size_t> result;
+  const bool numbered = has_numbered_times(table);
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const TableColumn& column = table.columns[i];
-    if (!column.has_values) {
+    if (!column.has_values || column.is_part_of_time) {
       continue;
     }
-    if (is_clock_kind(column.kind) || (column.is_named && time_name(column.name)) || is_time_of_signal(table, i) ||
-        (i == 0 && column.is_named && time_unit(column.unit))) {
+    if ((numbered && i % 2 == 0) || is_clock_kind(column.kind) || (column.is_named && time_name(column.name)) ||
+        is_time_of_signal(table, i) || (i == 0 && column.is_named && time_unit(column.unit))) {
       result.push_back(i);
     }
+  }
+  // Beside a column that says time, a T is a temperature or a torque.
+  const auto is_capital = [&](std::size_t i) { return table.columns[i].name == "T" && table.columns[i].unit.empty(); };
+  if (std::ranges::any_of(result, [&](std::size_t i) {
+        return table.columns[i].name.size() > 2 || is_clock_kind(table.columns[i].kind);
+      })) {
+    std::erase_if(result, is_capital);
   }
   return result;
 }
@@ -97,7 +128,11 @@ std::vector<std::size_t> candidates(const Table& table) {
   const bool named = std::ranges::any_of(table.columns, [](const TableColumn& one) { return one.is_named; });
   std::string mend =
       "state how many rows a second it has, such as --rate 1kHz, or name its column, as --time NAME[ms].";
-  if (!rising.empty()) {
+  if (table.stated) {
+    mend = fmt::format(
+        "above the rows stands \"{}\": read it with --rate {}Hz, or name the column of the time, as --time NAME[ms].",
+        table.stated->words, rounded_text(1.0 / table.stated->period));
+  } else if (!rising.empty()) {
     mend = fmt::format(
         "column {} rises from row to row: if that is the time, read it with --time {}; without a "
         "time, state the rate, such as --rate 1kHz.",
@@ -152,7 +187,7 @@ FoundUnit unit_of(const TableColumn& column, const ReadOptions& options) {
   } else if (epoch) {
     result.unit = *epoch;
   }
-  result.is_epoch = epoch.has_value();
+  result.is_epoch = epoch.has_value() && epoch->name == result.unit.name;
   return result;
 }
 
@@ -166,12 +201,42 @@ std::string date_text(std::int64_t seconds) {
                      time.minutes().count(), time.seconds().count());
 }
 
+/// Counters of 16 and 32 bits begin anew: micros() after 71 minutes. True where the times go on so, and are even.
+bool unwrapped(const std::vector<double>& values, std::vector<double>& result) {
+  if (std::ranges::adjacent_find(values, std::greater_equal{}) == values.end()) {
+    return false;
+  }
+  const double usual = median_step(values);
+  for (const double size : {65536.0, 4294967296.0}) {
+    result.clear();
+    double turns = 0.0;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const double step = k == 0 ? usual : values[k] - values[k - 1];
+      turns += step < -0.5 * size ? 1.0 : 0.0;
+      result.push_back(values[k] - values.front() + turns * size);
+      if (values[k] >= size || values[k] < 0.0 || values[k] != std::floor(values[k])) {
+        turns = 0.0;
+        break;
+      }
+    }
+    const auto uneven = [&](double a, double b) { return !(b - a > 0.5 * usual && b - a < 1.5 * usual); };
+    if (turns > 0.0 && usual > 0.0 && std::ranges::adjacent_find(result, uneven) == result.end()) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// The times of a column in its own unit. Numbers that count from the record's begin are those that were printed, to
 /// the bit; dates, and numbers that count from elsewhere, count from the first row.
 std::vector<double> raw_times(const TableColumn& column, const std::vector<Stamp>& stamps, bool is_date,
                               bool is_epoch) {
   const bool is_clock = is_clock_kind(column.kind);
   const Stamp first = stamps.front();
+  std::vector<double> wrapped;
+  if (column.kind == CellKind::Number && !is_epoch && unwrapped(column.values, wrapped)) {
+    return wrapped;
+  }
   if (!is_clock && !is_epoch && std::abs(raw_value(first)) <= longest_record) {
     return column.values;
   }
@@ -285,10 +350,28 @@ Found times_of_column(const Table& table, std::size_t index, std::optional<std::
     const double begin = unit.unit.name == "100 ns" ? since - from_1601_to_1970 : since;
     result.note = fmt::format(", from {} on", date_text(static_cast<std::int64_t>(std::floor(begin))));
   }
+  if (column.kind == CellKind::Number && raw.back() > column.values.back() - column.values.front() + 32768.0) {
+    result.note += ", whose counter begins anew";
+  }
   if (unit.unit.name != "s") {
     result.note = fmt::format(", in {}{}", unit.unit.name, result.note);
   }
   return result;
+}
+
+/// The times of a signal that has its own, as many as it has rows.
+std::vector<double> own_times(const Table& table, std::size_t index, const ReadOptions& options) {
+  const std::size_t rows = own_rows(table.columns[index], table.rows);
+  if (rows == table.rows || rows < 2) {
+    return times_of_column(table, index, std::nullopt, options).seconds;
+  }
+  Table shorter{.columns = {table.columns[index]}, .rows = rows, .place = table.place};
+  TableColumn& column = shorter.columns.front();
+  column.values.resize(std::min(column.values.size(), rows));
+  column.stamps.resize(std::min(column.stamps.size(), rows));
+  column.missing.clear();
+  column.fault.reset();
+  return times_of_column(shorter, 0, std::nullopt, options).seconds;
 }
 
 }  // namespace
@@ -331,6 +414,15 @@ Times times_of(const Table& table, const ReadOptions& options) {
       std::erase_if(found, [&](std::size_t i) { return !rises(table.columns[i]); });
     }
   }
+  if (found.empty() && table.stated && table.stated->is_of_rows) {
+    result.grid.sample_time = table.stated->period;
+    for (std::size_t k = 0; k < table.rows; ++k) {
+      result.seconds.push_back(table.stated->begin + static_cast<double>(k) * table.stated->period);
+    }
+    result.notes.push_back(fmt::format("the time is counted in steps of {} s, by \"{}\" above the rows",
+                                       number_text(table.stated->period), table.stated->words));
+    return result;
+  }
   if (found.empty()) {
     refuse_without_time(table);
   }
@@ -362,8 +454,11 @@ Times times_of(const Table& table, const ReadOptions& options) {
                 option_value(table.columns[found.front()].name)));
       }
       for (const std::size_t i : found) {
-        result.own.push_back({.column = i + 1, .seconds = times_of_column(table, i, std::nullopt, options).seconds});
+        result.own.push_back({.column = i + 1, .seconds = own_times(table, i, options)});
       }
+      // The time of the record is that of the signal with the most rows.
+      std::ranges::stable_sort(found, std::ranges::greater{},
+                               [&](std::size_t i) { return own_rows(table.columns[i], table.rows); });
       result.used = found;
     } else if (!others.empty() && exact != found.end()) {
       result.used = {*exact};
@@ -372,7 +467,8 @@ Times times_of(const Table& table, const ReadOptions& options) {
       throw InputError(
           error::two_readings, table.columns[others.front()].place,
           fmt::format("Each of the columns {} could be the time.", fmt::join(names_of(table, found), " and ")),
-          fmt::format("say which: --time {}.", option_value(table.columns[found.front()].name)));
+          fmt::format("say which: --time {} or --time {}.", option_value(table.columns[found.front()].name),
+                      option_value(table.columns[others.front()].name)));
     }
   }
   const std::size_t index = found.front();

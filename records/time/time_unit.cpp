@@ -40,6 +40,7 @@ constexpr auto spellings = std::to_array<Spelling>({
     {"msec", milli},
     {"msecs", milli},
     {"millis", milli},
+    {"millitm", milli},  // of FactoryTalk
     {"millisecond", milli},
     {"milliseconds", milli},
     {"millisekunden", milli},
@@ -57,6 +58,8 @@ constexpr auto spellings = std::to_array<Spelling>({
     {"nsec", nano},
     {"nsecs", nano},
     {"nanos", nano},
+    {"nanosec", nano},
+    {"nanosecs", nano},
     {"nanosecond", nano},
     {"nanoseconds", nano},
     {"100ns", filetime},
@@ -128,6 +131,10 @@ constexpr auto names = std::to_array<std::string_view>({
     "time axis",
     "filetime",
     "timecode",
+    "ts",
+    "t_stamp",
+    "created_at",
+    "last_changed",
 });
 
 }  // namespace
@@ -169,17 +176,24 @@ std::optional<MistakenUnit> mistaken_unit(double ratio) {
 }
 
 std::optional<TimeName> time_name(std::string_view name) {
-  name = trimmed(name);
+  name = trimmed(name, " \t_");
+  // Of Arduino's and others' functions, whose names say the unit.
+  constexpr auto functions = std::to_array<std::string_view>(
+      {"sec", "secs", "second", "seconds", "millis", "micros", "nanos", "millisecond", "milliseconds", "microsecond",
+       "microseconds", "nanosecond", "nanoseconds", "msec", "usec", "nsec", "filetime"});
+  if (is_one_of(name, functions)) {
+    return TimeName{.unit = time_unit(name)};
+  }
+  if (is_one_of(name, {"tms", "tus", "tns"})) {
+    return TimeName{.unit = time_unit(name.substr(1))};
+  }
   if (is_one_of(name, names)) {
-    return TimeName{.unit = equal_ignoring_case(name, "second") || equal_ignoring_case(name, "seconds")
-                                ? std::optional(second)
-                            : equal_ignoring_case(name, "filetime") ? std::optional(filetime)
-                                                                    : std::nullopt};
+    return TimeName{};
   }
   // A unit behind the name: Time (s), t_ms, Zeit/ms, time in us, Time, s, timeMs.
   const auto with = [&](std::string_view base, std::string_view unit) -> std::optional<TimeName> {
     base = trimmed(base);
-    const auto found = time_unit(unit);
+    const auto found = trimmed(unit) == "S" ? std::optional(second) : time_unit(unit);  // TIME_S; alone it is siemens
     return found && is_one_of(base, names) ? std::optional(TimeName{.unit = found}) : std::nullopt;
   };
   if (name.ends_with(')') || name.ends_with(']')) {
@@ -187,6 +201,9 @@ std::optional<TimeName> time_name(std::string_view name) {
     if (open != std::string_view::npos && open > 0) {
       return with(name.substr(0, open), name.substr(open + 1, name.size() - open - 2));
     }
+  }
+  if (name.starts_with("in ") && time_unit(name.substr(3))) {  // of Rohde & Schwarz
+    return TimeName{.unit = time_unit(name.substr(3))};
   }
   for (const std::string_view joint : {"_in_", " in ", "_", "/", ",", " ", "."}) {
     if (const auto at = name.rfind(joint); at != std::string_view::npos && at > 0) {
@@ -196,6 +213,18 @@ std::optional<TimeName> time_name(std::string_view name) {
     }
   }
   return std::nullopt;
+}
+
+std::string_view last_word(std::string_view name) {
+  name = trimmed(name);
+  const auto joint = name.find_last_of("._/ ");
+  return joint == std::string_view::npos ? name : name.substr(joint + 1);
+}
+
+std::string_view without_number(std::string_view name) {
+  name = trimmed(name);
+  const auto end = name.find_last_not_of("0123456789");
+  return end == std::string_view::npos || end + 1 == name.size() ? name : trimmed(name.substr(0, end + 1), " _");
 }
 
 bool is_time_of(std::string_view name, std::string_view signal) {

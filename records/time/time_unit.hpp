@@ -42,6 +42,12 @@ struct TimeName {
 /// Whether a column of this name is the time, by what tools of the field call it.
 [[nodiscard]] std::optional<TimeName> time_name(std::string_view name);
 
+/// `nsec` of header.stamp.nsec.
+[[nodiscard]] std::string_view last_word(std::string_view name);
+
+/// `t` of t1 and t_1; the name itself where no number ends it.
+[[nodiscard]] std::string_view without_number(std::string_view name);
+
 /// Whether a column is called the time of another: t_u or u_time beside u.
 [[nodiscard]] bool is_time_of(std::string_view name, std::string_view signal);
 

@@ -153,6 +153,11 @@ class Runs(Folder):
         settled = hysteron.compile(PLANT, '[record.columns]\nU = "MAIN.u"\n')
         self.assertEqual(bits(settled.run(self.folder / "trend.txt")["Y"]),
                          bits(hysteron.compile(PLANT).run({"U": [0.0, 0.25, 0.5]})["Y"]))
+        # What the parameter file calls the columns of files is no matter of arrays, which have the names of the inputs.
+        self.assertEqual(bits(settled.run({"U": [0.0, 0.25, 0.5]})["Y"]), bits(hysteron.compile(PLANT).run({"U": [0.0, 0.25, 0.5]})["Y"]))
+        with self.assertRaises(hysteron.Error) as caught:
+            settled.run({"V": [0.0, 0.25, 0.5]})
+        self.assertEqual((caught.exception.code, "V" in caught.exception.message), ("HY502", True))
         part = hysteron.read_record(self.folder / "trend.txt", range="1ms..")
         self.assertEqual(part["y"].tolist(), [1.5, 2.5])
 

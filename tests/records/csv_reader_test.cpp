@@ -137,11 +137,12 @@ TEST(CsvReader, TheEarlierDecimalMarkIsNoted) {
 }
 
 TEST(CsvReader, RefusesTimesThatAreNoGrid) {
-  EXPECT_EQ(refusal_of("t,u\n0,1\n0.5,1\n0.5,1\n1,1\n"),
+  EXPECT_EQ(refusal_of("t,u\n0,1\n0.5,1\n0.5,2\n1,1\n"),
             "HY508 error: log.csv:4:1: The time 0.5 s stands in two rows.\n"
-            "    4 | 0.5,1\n"
+            "    4 | 0.5,2\n"
             "      | ^^^\n"
-            "mend: print the time with more digits, or remove the row that was written twice.\n"
+            "mend: print the time with more digits, or remove the row that was written twice; events of a simulation: "
+            "--resample hold, and the later row counts.\n"
             "note: log.csv:3:1: the row before\n"
             "    3 | 0.5,1\n"
             "      | ^^^\n");

@@ -273,7 +273,7 @@ TEST(Dress, APartIsReadWhateverStandsBesideIt) {
   const std::string text = "t,u\n0,1\n1,2\n2,3\nt,u\n0,4\n1,5\n2,6\n";
   EXPECT_THAT(parse_record("log.csv", text, {.last_row = 3}).column("u").values, ElementsAre(1.0, 2.0, 3.0));
   EXPECT_THAT(parse_record("log.csv", text, {.first_row = 4}).column("u").values, ElementsAre(4.0, 5.0, 6.0));
-  EXPECT_THAT(refusal_of("t,u\n0,--\n1,2\n2,3\n"), HasSubstr("Column u begins with \"--\""));
+  EXPECT_THAT(refusal_of("t,u\n0,--\n1,2\n2,3\n"), HasSubstr("Column u holds \"--\" here: no value was measured."));
 }
 
 TEST(Dress, SignalsWithTimesOfTheirOwnAreBroughtTogether) {

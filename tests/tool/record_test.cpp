@@ -27,7 +27,7 @@ TEST(RecordCommand, SaysWhatWasUnderstood) {
   EXPECT_EQ(text.code, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("4 rows every 0.001 s (1000 a second), from 0 s to 0.003 s"));
   EXPECT_THAT(text.out, HasSubstr("the time is column time, in ms"));
-  EXPECT_THAT(text.out, HasSubstr("HY505: Column state holds no numbers."));
+  EXPECT_THAT(text.out, HasSubstr("HY505: Column state holds no numbers: it begins with \"a\"."));
   const auto json = bench.shell("hysteron record log.csv --json");
   const auto found = nlohmann::json::parse(json.out);
   EXPECT_EQ(found.at("rows"), 4);
@@ -61,6 +61,52 @@ TEST(RecordCommand, DrawsItsColumns) {
   EXPECT_EQ(bench.shell("rsvg-convert log.svg -o log.png").code, 0);
   EXPECT_EQ(bench.shell("hysteron record log.csv --picture log.csv").code, 2);
   EXPECT_THAT(bench.read("log.csv"), HasSubstr("t,u,y"));
+}
+
+/// All that is uneven is shown, each kind once, and the record is refused all the same.
+TEST(RecordCommand, UnevenTimesAreShownBeforeTheyAreRefused) {
+  const test::Workbench bench;
+  std::string log = "t,u,state\n";
+  for (int k = 0; k < 60; ++k) {
+    if (k != 20 && k != 21 && k != 40) {
+      log += fmt::format("{:.3f},{},idle\n", 0.001 * k, k % 7);
+    }
+  }
+  bench.write("log.csv", log);
+  const auto shown = bench.shell("hysteron record log.csv");
+  EXPECT_EQ(shown.code, 2);
+  EXPECT_THAT(shown.out, HasSubstr("57 rows every 0.001 s"));
+  EXPECT_THAT(
+      shown.out,
+      HasSubstr("2 gaps, in which some 3 rows are missing; the first is behind row 20, the longest lasts 0.003 s"));
+  EXPECT_THAT(shown.out, HasSubstr("HY505: Column state holds no numbers"));
+  EXPECT_THAT(shown.err, HasSubstr("HY507"));
+  const auto json = nlohmann::json::parse(bench.shell("hysteron record log.csv --json").out);
+  EXPECT_EQ(json.at("gaps"), 2);
+  EXPECT_EQ(json.at("missing_rows"), 3);
+  EXPECT_EQ(json.at("backward_rows"), 0);
+  const auto whole = nlohmann::json::parse(bench.shell("hysteron record log.csv --resample hold --json").out);
+  EXPECT_EQ(whole.at("gaps"), 0);
+}
+
+TEST(RecordCommand, SaysWhetherARecordExcitesWhatIsToBeFitted) {
+  const test::Workbench bench;
+  bench.write("p.st", plant);
+  bench.write("p.toml", parameters);
+  bench.write("log.csv", "t,u [mV],y\n0.000,0,0.01\n0.001,1000,3\n0.002,500,1.5\n0.003,-200,-0.6\n0.004,300,0.91\n");
+  const auto shown = bench.shell("hysteron record log.csv --for p.st --params p.toml");
+  EXPECT_EQ(shown.code, 0) << shown.err;
+  EXPECT_THAT(shown.out, testing::ContainsRegex("A\\.K  .*1 um/V .* (well|weakly|no)\n"));
+  EXPECT_THAT(shown.err, HasSubstr("was converted to V"));
+  const auto json = nlohmann::json::parse(bench.shell("hysteron record log.csv --for p.st --params p.toml --json").out);
+  EXPECT_EQ(json.at("excitation").at(0).at("name"), "A.K");
+  EXPECT_EQ(json.at("columns").at(0).at("unit"), "mV") << "as the file has it";
+  bench.write("odd.csv", "t,v\n0.000,0\n0.001,1\n0.002,0\n");
+  const auto missing = bench.shell("hysteron record odd.csv --for p.st --params p.toml");
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_THAT(missing.out, HasSubstr("3 rows every 0.001 s"));
+  EXPECT_THAT(missing.err, HasSubstr("HY717"));
+  EXPECT_THAT(bench.shell("hysteron record log.csv --for p.st").err, HasSubstr("--params p.toml"));
 }
 
 TEST(RecordCommand, UnitsOfARecordAreConverted) {
@@ -102,6 +148,14 @@ TEST(RecordCommand, WhatHoldsForAllRecordsStandsInTheParameterFile) {
   const auto run = bench.shell("hysteron run p.st --in log.csv --params tuned.toml --out out.csv --summary");
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("RMSE against"));
+  // A record of the inputs alone has no column for Y, and one of the simulator the names of the diagram.
+  bench.write("drive.csv", "x,MAIN.u\n0,0\n1,1\n2,0.5\n");
+  const auto driven = bench.shell("hysteron run p.st --in drive.csv --params tuned.toml --out out.csv");
+  EXPECT_EQ(driven.code, 0) << driven.err;
+  EXPECT_THAT(driven.err, HasSubstr("there is no column 3, which the parameter file names for Y"));
+  bench.write("simulated.csv", "x,U\n0,0\n1,1\n2,0.5\n");
+  EXPECT_EQ(bench.shell("hysteron run p.st --in simulated.csv --params tuned.toml --out out.csv").code, 0);
+  EXPECT_EQ(bench.shell("hysteron run p.st --in drive.csv --params tuned.toml --column Y=3 --out out.csv").code, 2);
   const auto shown = bench.shell("hysteron record log.csv --params p.toml --column U=z");
   EXPECT_EQ(shown.code, 0) << shown.err;
   EXPECT_THAT(shown.out, HasSubstr("\nU "));

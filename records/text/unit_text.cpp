@@ -1,0 +1,132 @@
+#include "records/text/unit_text.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "support/names.hpp"
+#include "support/trimmed.hpp"
+
+namespace hysteron::records {
+namespace {
+
+/// Take a prefix: mV, kHz, um.
+constexpr auto with_prefix = std::to_array<std::string_view>(
+    {"V",   "A", "W",   "Hz",  "N",    "Nm",  "m",   "g",        "Pa",           "bar",  "J",   "F",  "H",
+     "T",   "s", "rad", "K",   "C",    "Ohm", "ohm", "\xCE\xA9", "\xE2\x84\xA6", "Wb",   "S",   "eV", "VA",
+     "var", "l", "L",   "Vpp", "Vrms", "Vdc", "Vac", "VDC",      "VAC",          "Arms", "App", "B",  "dB"});
+constexpr auto alone = std::to_array<std::string_view>({"%",
+                                                        "\xC2\xB0",
+                                                        "\xC2\xB0"
+                                                        "C",
+                                                        "\xC2\xB0"
+                                                        "F",
+                                                        "deg",
+                                                        "degC",
+                                                        "degF",
+                                                        "rpm",
+                                                        "RPM",
+                                                        "1/min",
+                                                        "U/min",
+                                                        "sec",
+                                                        "sek",
+                                                        "Sec",
+                                                        "min",
+                                                        "h",
+                                                        "d",
+                                                        "psi",
+                                                        "lb",
+                                                        "lbf",
+                                                        "inch",
+                                                        "ft",
+                                                        "counts",
+                                                        "count",
+                                                        "cnt",
+                                                        "cts",
+                                                        "inc",
+                                                        "LSB",
+                                                        "pu",
+                                                        "p.u.",
+                                                        "1",
+                                                        "mmHg",
+                                                        "mils"});
+constexpr auto prefixes =
+    std::to_array<std::string_view>({"p", "n", "u", "\xC2\xB5", "\xCE\xBC", "m", "c", "d", "k", "M", "G", "h"});
+
+bool is_one(std::string_view text, const auto& list) {
+  return std::ranges::find(list, text) != list.end();
+}
+
+/// m, s2, s^2, s-1
+bool is_factor(std::string_view text) {
+  const auto end = text.find_last_not_of("0123456789^-()");
+  if (end == std::string_view::npos) {
+    return text == "1";
+  }
+  text = text.substr(0, end + 1);
+  if (is_one(text, with_prefix) || is_one(text, alone)) {
+    return true;
+  }
+  return std::ranges::any_of(prefixes, [&](std::string_view prefix) {
+    return text.starts_with(prefix) && is_one(text.substr(prefix.size()), with_prefix);
+  });
+}
+
+}  // namespace
+
+std::string_view without_brackets(std::string_view text) {
+  const bool bracketed =
+      text.size() >= 2 && ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')'));
+  return bracketed ? text.substr(1, text.size() - 2) : text;
+}
+
+std::string unit_of_word(std::string_view text) {
+  text = without_brackets(text);
+  struct Word {
+    std::string_view word, unit;
+  };
+  constexpr auto words = std::to_array<Word>({{"Volt", "V"},
+                                              {"Volts", "V"},
+                                              {"VDC", "V"},
+                                              {"Ampere", "A"},
+                                              {"Amperes", "A"},
+                                              {"Amps", "A"},
+                                              {"ADC", "A"},
+                                              {"Watt", "W"},
+                                              {"Degree", "deg"}});
+  const auto found = std::ranges::find_if(words, [&](const Word& one) { return equal_ignoring_case(one.word, text); });
+  return std::string(found == words.end() ? text : found->unit);
+}
+
+bool is_known_unit(std::string_view text) {
+  text = trimmed(text);
+  if (text.empty() || text.size() > 16) {
+    return false;
+  }
+  if (is_one(text, alone)) {
+    return true;
+  }
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find_first_of("/*.", at), text.size());
+    std::string_view factor = text.substr(at, end - at);
+    constexpr std::string_view middle_dot = "\xC2\xB7";
+    const auto dot = factor.find(middle_dot);
+    if (!is_factor(factor.substr(0, dot)) ||
+        (dot != std::string_view::npos && !is_factor(factor.substr(dot + middle_dot.size())))) {
+      return false;
+    }
+    at = end + 1;
+  }
+  return true;
+}
+
+bool is_key_of_units(std::string_view text) {
+  return is_one_of(text, {"unit", "units", "unit:", "units:", "einheit", "einheiten"});
+}
+
+std::string_view without_unit_key(std::string_view text) {
+  const auto colon = text.find(':');
+  return colon != std::string_view::npos && is_key_of_units(text.substr(0, colon)) ? trimmed(text.substr(colon + 1))
+                                                                                   : text;
+}
+
+}  // namespace hysteron::records

@@ -55,11 +55,11 @@ TEST(BodyErrors, NameWhatThereIsInstead) {
 /// By the standard methods stand before the body: what is behind them is read as the body.
 TEST(BodyErrors, ABodyBehindMethodsIsRead) {
   Diagnostics found;
-  check(std::make_shared<const language::SourceFile>(language::parse(
-            "t",
-            "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT X : REAL; END_VAR VAR_OUTPUT Y : REAL; END_VAR\n"
-            "METHOD M : BOOL END_METHOD\nIF X > 0.0 THEN Y := X; END_IF;\nY := Z;\nEND_FUNCTION_BLOCK",
-            found)),
+  check(std::make_shared<const language::SourceFile>(
+            language::parse("t",
+                            "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT X : REAL; END_VAR VAR_OUTPUT Y : REAL; END_VAR\n"
+                            "METHOD M : BOOL END_METHOD\nIF X > 0.0 THEN Y := X; END_IF;\nY := Z;\nEND_FUNCTION_BLOCK",
+                            found)),
         found);
   ASSERT_EQ(found.all().size(), 2U);
   EXPECT_EQ(found.all()[0].number, error::refused_in_body);

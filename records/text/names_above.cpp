@@ -29,6 +29,16 @@ bool repeats_itself(const std::vector<Cell>& cells) {
   return false;
 }
 
+bool has_value(const std::vector<Cell>& cells) {
+  return std::ranges::any_of(cells, [](const Cell& cell) { return is_value(cell_value(cell.text).kind); });
+}
+
+/// `t,u,` below a line of titles is a row of names, whatever it lacks; `t,,` is the name of an index.
+bool names_time(const std::vector<Cell>& cells) {
+  return filled(cells) > 1 &&
+         std::ranges::any_of(cells, [](const Cell& cell) { return time_name(cell.text).has_value(); });
+}
+
 }  // namespace
 
 std::vector<HeadLine> lines_above(const std::vector<Line>& head, std::size_t first_row, char separator) {
@@ -81,7 +91,8 @@ std::size_t row_of_names(std::span<const HeadLine> words) {
   while (names + 1 < words.size()) {
     const std::vector<Cell>& low = words[names].cells;
     const std::vector<Cell>& high = words[names + 1].cells;
-    const bool second = states_units(low) || repeats_itself(low) || filled(low) < filled(high);
+    const bool odd = repeats_itself(low) || filled(low) < filled(high);
+    const bool second = states_units(low) || (odd && !names_time(low) && !has_value(high));
     if (!second || repeats_itself(high) || filled(high) < filled(low)) {
       break;
     }

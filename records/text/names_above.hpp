@@ -28,7 +28,7 @@ struct HeadLine {
 [[nodiscard]] bool is_name_of_index(const std::vector<Cell>& cells);
 
 /// Which of the lines, the nearest first, names the columns. It is the nearest, unless that states units, repeats
-/// itself or has gaps, and the one above it has a different word in each cell.
+/// itself or has gaps without naming a time, and the one above it has a different word in each cell.
 [[nodiscard]] std::size_t row_of_names(std::span<const HeadLine> words);
 
 }  // namespace hysteron::records

@@ -108,6 +108,10 @@ std::vector<Dialect> dialects() {
        written("Kanal;Zeit;u;y\nEinheit;s;V;um\nKommentar;;;\n", ";{t:.3f};{u:.4f};{y:.4f}\n")},
       {"units of ControlDesk by column",
        written("path;;R/u;R/y\nunit;s;;\ntype;XAxis;;\nname;time;u;y\n", "trace_values;{t:.3f};{u:.4f};{y:.4f}\n")},
+      {"titles above names that repeat a time",
+       written("Rig 4,Run 7,Piezo,Labor\nt,u,t,y\n", "{t:.3f},{u:.4f},{t:.3f},{y:.4f}\n")},
+      {"titles above names that end with a separator",
+       written("Rig 4,Run 7,Piezo,Labor\nt,u,y,\n", "{t:.3f},{u:.4f},{y:.4f},\n")},
       {"a name over two lines", written("\"t\n[s]\",\"u\r\n[V]\",\"y\n[um]\"\n", "{t:.3f},{u:.4f},{y:.4f}\n")},
       {"rows that begin with their number, of R",
        [] {

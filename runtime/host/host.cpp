@@ -327,7 +327,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     (void)std::signal(SIGHUP, SIG_IGN);  // as nohup wants it
   }
   tell_of_unused_devices(config);
-  if (const std::string anew = new_places(config); !anew.empty()) {
+  if (const std::string anew = new_places(config); !anew.empty() && !options.virtual_time) {
     tell("Start", anew, Weight::notice);
   }
   if (config.trace) {

@@ -427,7 +427,11 @@ def on_opcua(task, seconds, total):
         print(f"Not tried: {reason}.")
         return
     head("attack", *MODBUS, "gateway: requests", "errors", "p99, ms", "worst, ms")
+    sys.stdout.flush()
+    own = os.dup(1)
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # of the gateway's library, which says there whom it refuses
     with gateway.Gateway(task.web_port, "--anonymous") as opcua:
+        os.dup2(own, 1)
         for attack in ON_OPCUA:
             greeting = ("again", {"port": opcua.port, "sends": hello(opcua.port).hex(), "expects": "ACKF"})
             modbus, ours = beside("opcua", attack, opcua.port, seconds, [("modbus", {"port": task.modbus_port}), greeting])

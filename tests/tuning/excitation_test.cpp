@@ -15,7 +15,7 @@ namespace hysteron {
 namespace {
 
 using namespace measured_machines;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr std::size_t excitation_rows = 400;
 constexpr double excitation_step = 1e-3;

@@ -88,8 +88,9 @@ ENTRYPOINT ["/usr/bin/{name}_host", "/etc/{unit}.toml"]
 }  // namespace
 
 std::string build_packages(bool page) {
-  return std::string("g++ cmake pkg-config libmodbus-dev libmosquitto-dev libssl-dev libsqlite3-dev libtomlplusplus-dev "
-                     "libfmt-dev nlohmann-json3-dev") +
+  return std::string(
+             "g++ cmake pkg-config libmodbus-dev libmosquitto-dev libssl-dev libsqlite3-dev libtomlplusplus-dev "
+             "libfmt-dev nlohmann-json3-dev") +
          (page ? " libboost-dev" : "");
 }
 

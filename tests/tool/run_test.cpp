@@ -171,7 +171,7 @@ TEST_F(Run, AMissingColumnIsNamedWithThoseThereAre) {
             "HY502 error: log.csv:1:1: There is no column X; the columns are t, x_ref, u.\n"
             "    1 | t,x_ref,u\n"
             "      | ^^^^^^^^^\n"
-            "mend: record the signal, or say which column it is, as --column X=NAME.\n"
+            "mend: if x_ref is meant, say so: --column X=x_ref.\n"
             "note: plant.st:3:5: the input; X := … would give it a default\n"
             "    3 |     X     : LREAL;          (* @unit V @min -10 @max 10 *)\n"
             "      |     ^\n\n1 error\n");

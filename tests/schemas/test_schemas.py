@@ -161,7 +161,8 @@ class Schemas(unittest.TestCase):
         self.holds("blocks", self.printed("blocks", "--json"), self.printed("blocks", "HY_LAG", "--json"))
 
     def test_record(self):
-        self.holds("record", self.printed("record", "log.csv", "--json"))
+        self.holds("record", self.printed("record", "log.csv", "--json"),
+                   self.printed("record", "log.csv", "--for", "plant.st", "--params", "p.toml", "--json"))
 
     def test_history(self):
         (self.folder / "run.toml").write_text('[outputs.Y]\nsafe = 0.0\n[history]\nfile = "history.sqlite"\nevery = "1ms"\n')

@@ -342,8 +342,8 @@ TEST(GenerateHost, BuiltItHasTheBitsTheRegistersAndTheRetainedValuesOfServe) {
   EXPECT_EQ(bench.shell("cmake --install build").code, 0);
   EXPECT_EQ(bench.read("stage/etc/hysteron-plant.toml"), "# edited on the machine\n");
 
-  // A package of Debian, where there is what makes one.
-  if (bench.shell("command -v dpkg-shlibdeps").code == 0) {
+  // A package of Debian, where it is asked for: cpack builds everything a second time.
+  if (std::getenv("HYSTERON_TEST_HOST_PACKAGE") != nullptr) {
     const auto packed =
         bench.shell("cmake -DCMAKE_INSTALL_PREFIX=/usr -DPACKAGE_VERSION=7.1 build && cd build && cpack");
     ASSERT_EQ(packed.code, 0) << packed.out << packed.err;

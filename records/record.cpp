@@ -45,6 +45,14 @@ std::vector<std::string> Record::names() const {
   return result;
 }
 
+std::vector<std::string> Record::all_names() const {
+  std::vector<std::string> result = names();
+  for (const Unreadable& one : unreadable_) {
+    result.push_back(one.name);
+  }
+  return result;
+}
+
 const Column* Record::find(std::string_view name) const {
   const auto is_it = [&](const auto& column) { return equal_ignoring_case(column.name, name); };
   const auto found = std::ranges::find_if(columns_, is_it);
@@ -63,10 +71,7 @@ const Column& Record::column(std::string_view name) const {
   if (const Column* const found = find(name)) {
     return *found;
   }
-  auto known = names();
-  for (const Unreadable& one : unreadable_) {
-    known.push_back(one.name);
-  }
+  const auto known = all_names();
   // MAIN.fbAxis.u for U: what a controller records has the path of its variable before the name.
   const auto ends_so = std::ranges::find_if(known, [&](const std::string& one) {
     return one.size() > name.size() && equal_ignoring_case(one.substr(one.size() - name.size()), name) &&

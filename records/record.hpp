@@ -52,6 +52,8 @@ class Record {
 
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
   [[nodiscard]] std::vector<std::string> names() const;
+  /// Those of the unreadable columns, too.
+  [[nodiscard]] std::vector<std::string> all_names() const;
   /// Null where there is no such column. Throws InputError where there is one whose cells are no numbers.
   [[nodiscard]] const Column* find(std::string_view name) const;
   /// Throws InputError HY502, which names the columns there are, where there is no such column.

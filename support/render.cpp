@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/byte_order_mark.hpp"
+#include "support/counted.hpp"
 #include "support/errors.hpp"
 #include "support/text_file.hpp"
 #include "support/utf8.hpp"
@@ -173,9 +174,6 @@ std::string as_text(const Diagnostics& diagnostics, Sources& sources, const Rend
                           options.alike);
     }
   }
-  const auto counted = [](std::size_t count, std::string_view noun) {
-    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-  };
   if (errors > 0) {
     text += counted(errors, "error") + (warnings > 0 ? ", " : "\n");
   }

@@ -17,6 +17,7 @@
 #include "records/table.hpp"
 #include "records/uneven_record.hpp"
 #include "support/atomic_file.hpp"
+#include "support/counted.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
 #include "support/rounded_text.hpp"
@@ -96,10 +97,6 @@ std::vector<Row> rows_of(const records::Record& record) {
 
 std::string first_sentence(const Diagnostic& fault) {
   return fmt::format("HY{}: {}", fault.number, fault.cause);
-}
-
-std::string counted(std::size_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 /// One line where the times are even; else what is uneven in them.

@@ -106,10 +106,8 @@ class Builder {
                          "declare one in VAR_OUTPUT, named as the record's column.");
     } else if (problem_.outputs.empty()) {
       const std::vector<std::string> names = names_of(outputs);
-      std::vector<std::string> columns = records_.empty() ? std::vector<std::string>() : records_.front().names();
-      for (std::size_t i = 0; !records_.empty() && i < records_.front().unreadable().size(); ++i) {
-        columns.push_back(records_.front().unreadable()[i].name);
-      }
+      const std::vector<std::string> columns =
+          records_.empty() ? std::vector<std::string>() : records_.front().all_names();
       diagnostics_.error(
           error::no_measured_output, {.file = records_.empty() ? std::string() : records_.front().file()},
           fmt::format("No column bears the name of an output of {}: {}.", graph().name, fmt::join(names, ", ")),

@@ -150,7 +150,11 @@ CellValue cell_value(std::string_view text) {
     value.kind = CellKind::Empty;
     return value;
   }
-  text = behind_arrival(text);
+  std::size_t length = number_length(text);
+  if (length < text.size()) {
+    text = behind_arrival(text);
+    length = number_length(text);
+  }
   constexpr std::string_view minus = "\xE2\x88\x92";  // the sign of typography
   if (text.starts_with(minus) && number_length(text.substr(minus.size())) == text.size() - minus.size() &&
       is_digit(text[minus.size()])) {
@@ -159,7 +163,6 @@ CellValue cell_value(std::string_view text) {
     value.stamp = {-value.stamp.whole, -value.stamp.fraction};
     return value;
   }
-  const std::size_t length = number_length(text);
   if (length == text.size()) {
     value = as_number(text);
     const auto time = value.kind == CellKind::TwoMarks ? time_cell(text) : std::nullopt;  // 03.06.2024

@@ -12,6 +12,7 @@
 #include "records/text/layout.hpp"
 #include "records/text/long_table.hpp"
 #include "records/time/time_unit.hpp"
+#include "support/counted.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -21,10 +22,6 @@ namespace {
 
 /// More errors than these are not shown: a file of the wrong kind has one in every row.
 constexpr std::size_t most_errors = 10;
-
-std::string counted(std::size_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
 
 class Reader {
  public:
@@ -36,6 +33,7 @@ class Reader {
     source_ = std::make_shared<SourceText>(SourceText{.file = file, .text = std::move(text.text)});
     layout_ = layout_of(*source_, options.skip);
     source_->separator = layout_.separator;
+    names_ = layout_.names ? source_->line_at(*layout_.names).text : std::string_view();
     table_.notes.insert(table_.notes.end(), layout_.notes.begin(), layout_.notes.end());
   }
 
@@ -189,7 +187,7 @@ class Reader {
 
   /// Exports that were put one behind the other repeat the row of names.
   [[nodiscard]] bool repeats_names(const Line& line) const {
-    return layout_.names && row_ > 0 && line.text == source_->line_at(*layout_.names).text;
+    return row_ > 0 && !names_.empty() && line.text == names_;
   }
 
   void refuse_stray(const Line& line) {
@@ -475,6 +473,7 @@ class Reader {
   std::size_t row_ = 0;     ///< of numbers, from 1 on, those that are left out among them
   std::vector<std::optional<std::pair<Line, Cell>>> first_cells_;  ///< by column: the cell that has told it
   std::optional<Line> blank_;
+  std::string_view names_{};  ///< the row of names; empty where there is none
   std::size_t repeated_names_ = 0;
   std::optional<Line> stray_;  ///< text behind the rows: the end of the file, unless rows follow
   struct Pointed {

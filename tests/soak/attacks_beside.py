@@ -125,11 +125,6 @@ def ask_again(exchange, seconds):
 
 # What all attackers do
 
-class Stop(threading.Event):
-    def pause(self, seconds):
-        self.wait(seconds)
-
-
 def connected(port, patience=0.5):
     try:
         link = socket.create_connection(("127.0.0.1", port), patience)
@@ -152,7 +147,7 @@ def held(port, stop, count, greeting=b""):
             except OSError:
                 pass
             links.append(link)
-        stop.pause(0.2)
+        stop.wait(0.2)
         for link in links:
             link.close()
 
@@ -167,7 +162,7 @@ def repeated(port, stop, words):
                 if stop.is_set():
                     break
                 link.sendall(words())
-                stop.pause(0.001)
+                stop.wait(0.001)
         except OSError:
             pass
         link.close()
@@ -183,7 +178,7 @@ def dripped(port, stop, words):
                 if stop.is_set():
                     break
                 link.sendall(bytes([byte]))
-                stop.pause(0.4)
+                stop.wait(0.4)
         except OSError:
             pass
         link.close()
@@ -212,7 +207,7 @@ def unread(port, stop, greeting, words):
                     link.send(words)
                 except OSError:
                     pass
-            stop.pause(0.01)
+            stop.wait(0.01)
         for link in links:
             link.close()
 
@@ -287,13 +282,13 @@ def swallow(link, stop, words=b"", each=lambda: b"", pause=0.01):
         except TimeoutError:
             pass
         link.sendall(each())
-        stop.pause(pause)
+        stop.wait(pause)
 
 
 def drip(link, stop, words):
     for byte in words:
         link.sendall(bytes([byte]))
-        stop.pause(0.4)
+        stop.wait(0.4)
 
 
 ON_MQTT = {
@@ -348,7 +343,7 @@ def result_of(process):
 
 def run_part(name, given):
     if name == "attack":
-        stop = Stop()
+        stop = threading.Event()
         threading.Thread(target=lambda: (sys.stdin.read(), stop.set()), daemon=True).start()
         while not stop.is_set():
             GROUPS[given["group"]][given["attack"]](given["port"], stop)

@@ -26,15 +26,17 @@ Law free_law(VectorXd response) {
   return law;
 }
 
+VectorXd white_column(test::Noise& noise, std::size_t samples) {
+  const std::vector<double> values = noise.white(samples, 1.0);
+  return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(samples));
+}
+
 TEST(BlockRegression, TheHeldOutEnergyIsThatOfAFitWithoutTheBlock) {
   constexpr std::size_t samples = 90;
   const Task task = one_output(samples);
   const Blocks blocks(task, 1, 6, 1000);
   test::Noise noise(11);
-  const auto column = [&] {
-    const std::vector<double> values = noise.white(samples, 1.0);
-    return VectorXd(Eigen::Map<const VectorXd>(values.data(), samples));
-  };
+  const auto column = [&] { return white_column(noise, samples); };
   const VectorXd residuals = column();
   const MatrixXd known = column();
   const Law law = free_law(column());
@@ -64,10 +66,7 @@ TEST(BlockRegression, TwoOfAFamilyOnAnEdgeDoNotActAgainstEachOther) {
   const Task task = one_output(samples);
   const Blocks blocks(task, 1, 6, 1000);
   test::Noise noise(12);
-  const auto column = [&] {
-    const std::vector<double> values = noise.white(samples, 1.0);
-    return VectorXd(Eigen::Map<const VectorXd>(values.data(), samples));
-  };
+  const auto column = [&] { return white_column(noise, samples); };
   Law first = free_law(column());
   first.family = "dry_friction";
   first.edge = "DRIVE.XOUT";

@@ -27,7 +27,7 @@ Diagnosis diagnosed(const DiagnosisInput& input, const DiagnosisOptions& options
   Judged choice = judged(std::move(found), options, budget);
   const Answer first = answer_of(choice, options, rules);
   choice = weighed(std::move(choice), first, options, rules);
-  const Answer answer = choice.evidence.is_told ? answer_of(choice, options, rules) : first;
+  const Answer answer = !choice.evidence.families.empty() ? answer_of(choice, options, rules) : first;
   Diagnosis result = told(choice, answer, options, rules);
   result.work = choice.record.task.effort->spent();
   return result;

@@ -54,6 +54,9 @@ inline constexpr Threshold model_error{
     "by how much the energies that two sets leave may differ for their formulas' sake, "
     "in all blocks alike",
     0.0};
+inline constexpr Threshold reach{"reach", 10.0, "1", "convention: a decade",
+                                 "how many times its value a known parameter may move beside a set: what moves it "
+                                 "further cancels it, and is no cause"};
 inline constexpr Threshold another_place{
     "another place",
     0.7,
@@ -160,6 +163,7 @@ inline constexpr std::array all{work,
                                 rows,
                                 price,
                                 model_error,
+                                reach,
                                 another_place,
                                 draws,
                                 unsure_speed,

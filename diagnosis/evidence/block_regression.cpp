@@ -17,12 +17,50 @@ constexpr double ridge = 1e-9;
 /// Within its slack a row tells nothing; which rows are, follows from the fit, and mostly stands after three.
 constexpr int rounds = 6;
 
+VectorXd solved(const MatrixXd& gram, const VectorXd& diagonal, const VectorXd& right) {
+  MatrixXd matrix = gram;
+  matrix.diagonal() += diagonal;
+  return -matrix.ldlt().solve(right);
+}
+
+VectorXd ridge_of(const MatrixXd& gram) {
+  return (gram.diagonal() * ridge).cwiseMax(1e-300);
+}
+
+/// Each share within its bounds; what may be turned round, all of a family on an edge alike.
+bool are_within_bounds(std::span<const Law* const> laws, const VectorXd& shares) {
+  std::map<std::pair<std::string_view, std::string_view>, std::pair<bool, bool>> ways;  // by family and edge
+  Index at = 0;
+  for (const Law* law : laws) {
+    for (const Law::Term& term : law->terms) {
+      const double share = shares[at++];
+      if (!term.either_way && !term.holds(share)) {
+        return false;
+      }
+      if (term.either_way) {
+        auto& [forwards, backwards] = ways.try_emplace({law->family, law->edge}, true, true).first->second;
+        forwards = forwards && term.holds(share);
+        backwards = backwards && term.holds(-share);
+      }
+    }
+  }
+  return std::ranges::all_of(ways, [](const auto& one) { return one.second.first || one.second.second; });
+}
+
+/// What is left beyond a slack.
+double beyond(double left, double slack) {
+  return std::max(0.0, std::abs(left) - std::abs(slack));
+}
+
 }  // namespace
 
-BlockRegression::BlockRegression(const Blocks& blocks, VectorXd residuals, MatrixXd known)
+BlockRegression::BlockRegression(const Blocks& blocks, VectorXd residuals, MatrixXd known,
+                                 BlockRegressionOptions options)
     : blocks_(blocks),
       residuals_(std::move(residuals)),
       known_(std::move(known)),
+      reach_(options.reach.size() > 0 ? std::move(options.reach) : VectorXd::Constant(known_.cols(), infinity)),
+      is_held_to_tests_(options.is_held_to_tests),
       weights_(VectorXd::Ones(static_cast<Index>(blocks.outputs()))),
       counts_(MatrixXd::Zero(static_cast<Index>(blocks.count()), static_cast<Index>(blocks.outputs()))) {
   for (const Blocks::Run& run : blocks_.runs()) {
@@ -30,6 +68,7 @@ BlockRegression::BlockRegression(const Blocks& blocks, VectorXd residuals, Matri
     grams_.emplace_back(rows.transpose() * rows);
     counts_(static_cast<Index>(run.block), static_cast<Index>(run.output)) += static_cast<double>(run.size);
   }
+  gap_ = gap_without_laws();
 }
 
 BlockRegression::Terms BlockRegression::terms_of(std::span<const Law* const> laws, bool bounded) const {
@@ -98,45 +137,6 @@ BlockRegression::Products BlockRegression::products_of(const MatrixXd& known, co
   return result;
 }
 
-namespace {
-
-VectorXd solved(const MatrixXd& gram, const VectorXd& diagonal, const VectorXd& right) {
-  MatrixXd matrix = gram;
-  matrix.diagonal() += diagonal;
-  return -matrix.ldlt().solve(right);
-}
-
-VectorXd ridge_of(const MatrixXd& gram) {
-  return (gram.diagonal() * ridge).cwiseMax(1e-300);
-}
-
-/// Each share within its bounds; what may be turned round, all of a family on an edge alike.
-bool are_within_bounds(std::span<const Law* const> laws, const VectorXd& shares) {
-  std::map<std::pair<std::string_view, std::string_view>, std::pair<bool, bool>> ways;  // by family and edge
-  Index at = 0;
-  for (const Law* law : laws) {
-    for (const Law::Term& term : law->terms) {
-      const double share = shares[at++];
-      if (!term.either_way && !term.holds(share)) {
-        return false;
-      }
-      if (term.either_way) {
-        auto& [forwards, backwards] = ways.try_emplace({law->family, law->edge}, true, true).first->second;
-        forwards = forwards && term.holds(share);
-        backwards = backwards && term.holds(-share);
-      }
-    }
-  }
-  return std::ranges::all_of(ways, [](const auto& one) { return one.second.first || one.second.second; });
-}
-
-/// What is left beyond a slack.
-double beyond(double left, double slack) {
-  return std::max(0.0, std::abs(left) - std::abs(slack));
-}
-
-}  // namespace
-
 BlockRegression::Products BlockRegression::settled(const Terms& terms) const {
   MatrixXd known = known_;
   MatrixXd columns = terms.columns;
@@ -197,7 +197,8 @@ BlockRegression::Score BlockRegression::with(std::span<const Law* const> laws, b
   }
   score.known = all.head(fixed);
   score.shares = all.tail(own);
-  score.allowed = !bounded || are_within_bounds(laws, score.shares);
+  score.allowed =
+      !bounded || (are_within_bounds(laws, score.shares) && (score.known.array().abs() <= reach_.array()).all());
   if (!score.allowed) {
     return score;
   }
@@ -221,26 +222,56 @@ BlockRegression::Score BlockRegression::with(std::span<const Law* const> laws, b
     score.errors += (one - mean).tail(own).cwiseAbs2();
   }
   score.errors = (score.errors * ((count - 1.0) / count)).cwiseSqrt();
+  if (slack) {
+    score.held_out = left_with_slack(terms, without);
+    return score;
+  }
   const std::vector<Blocks::Run>& runs = blocks_.runs();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Blocks::Run& run = runs[i];
     const VectorXd& c = without[run.block];
-    double energy = 0.0;
-    if (slack) {
-      const VectorXd left = residuals_.segment(run.first, run.size) +
-                            known_.middleRows(run.first, run.size) * c.head(fixed) +
-                            terms.columns.middleRows(run.first, run.size) * c.tail(own);
-      const VectorXd free = terms.slacks.middleRows(run.first, run.size) * c.tail(own);
-      for (Index row = 0; row < run.size; ++row) {
-        energy += beyond(left[row], free[row]) * beyond(left[row], free[row]);
-      }
-    } else {
-      energy = residuals_.segment(run.first, run.size).squaredNorm() + 2.0 * c.dot(sums.products[i]) +
-               c.dot(sums.grams[i] * c);
-    }
+    const double energy = residuals_.segment(run.first, run.size).squaredNorm() + 2.0 * c.dot(sums.products[i]) +
+                          c.dot(sums.grams[i] * c);
     score.held_out(static_cast<Index>(run.block), static_cast<Index>(run.output)) += std::max(0.0, energy);
   }
   return score;
+}
+
+MatrixXd BlockRegression::left_with_slack(const Terms& terms, const std::vector<VectorXd>& without) const {
+  const Index fixed = known_.cols();
+  const Index own = terms.columns.cols();
+  MatrixXd held_out = MatrixXd::Zero(counts_.rows(), counts_.cols());
+  MatrixXd open_gap = held_out;  // of rows that the laws leave open: what is missing there
+  double tested = 0.0;
+  double tested_gap = 0.0;
+  for (const Blocks::Run& run : blocks_.runs()) {
+    const VectorXd& c = without[run.block];
+    const auto known_rows = known_.middleRows(run.first, run.size);
+    const auto slack_rows = terms.slacks.middleRows(run.first, run.size);
+    const auto gap = gap_.segment(run.first, run.size);
+    const VectorXd left = residuals_.segment(run.first, run.size) + known_rows * c.head(fixed) +
+                          terms.columns.middleRows(run.first, run.size) * c.tail(own);
+    const VectorXd free = slack_rows * c.tail(own);
+    const double weight = weights_[static_cast<Index>(run.output)];
+    double& energy = held_out(static_cast<Index>(run.block), static_cast<Index>(run.output));
+    double& open = open_gap(static_cast<Index>(run.block), static_cast<Index>(run.output));
+    for (Index row = 0; row < run.size; ++row) {
+      if ((slack_rows.row(row).array() == 0.0).all()) {
+        energy += left[row] * left[row];
+        tested += weight * left[row] * left[row];
+        tested_gap += weight * gap[row] * gap[row];
+      } else if (const double out = beyond(left[row], free[row]); out > 0.0) {
+        energy += out * out;
+      } else {
+        open += gap[row] * gap[row];
+      }
+    }
+  }
+  if (!is_held_to_tests_) {
+    return held_out;
+  }
+  const double share = tested_gap > 0.0 ? tested / tested_gap : 1.0;
+  return held_out + share * open_gap;
 }
 
 BlockRegression::Score BlockRegression::bare() const {
@@ -253,6 +284,18 @@ BlockRegression::Score BlockRegression::bare() const {
   }
   Score refitted = with({});
   return refitted.allowed && log_square(refitted.held_out) < log_square(kept.held_out) ? refitted : kept;
+}
+
+VectorXd BlockRegression::gap_without_laws() const {
+  const Products sums = products_of(known_, MatrixXd(residuals_.size(), 0), residuals_, true);
+  VectorXd refitted(residuals_.size());
+  for (const Blocks::Run& run : blocks_.runs()) {
+    const VectorXd c = solved(sums.whole - sums.of_block[run.block], ridge_of(sums.whole),
+                              sums.product - sums.product_of_block[run.block]);
+    refitted.segment(run.first, run.size) =
+        residuals_.segment(run.first, run.size) + known_.middleRows(run.first, run.size) * c;
+  }
+  return refitted.squaredNorm() < residuals_.squaredNorm() ? refitted : residuals_;
 }
 
 void BlockRegression::weigh(const MatrixXd& held_out) {

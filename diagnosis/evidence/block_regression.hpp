@@ -4,6 +4,8 @@
 //
 // J are the sensitivities of the known parameters, D the responses of the laws of a set. Where a law is only known to
 // lie within S|α| of D α, what lies within that is nothing: (|r + J δ + D α| − S|α|)₊ takes the place of the residual.
+// Such rows are no test of the law. Held to its tests, it is charged for them as for the rows that are: with the same
+// part of what is missing there.
 // For each block the coefficients are found without it, and what they leave there is its held-out energy. The Gram
 // matrices of the blocks are formed once for a set, so that all these fits cost little more than one (Allen's PRESS, by
 // blocks).
@@ -17,10 +19,15 @@
 
 namespace hysteron::diagnosis {
 
+struct BlockRegressionOptions {
+  VectorXd reach{};               ///< how far each known parameter may move; empty: as far as it will
+  bool is_held_to_tests = false;  ///< rows within a slack are charged, and not free
+};
+
 class BlockRegression {
  public:
   struct Score {
-    bool allowed = false;  ///< no share lies out of its bounds
+    bool allowed = false;  ///< no share lies out of its bounds, and no known parameter out of its reach
     MatrixXd held_out{};   ///< Σr² by block and output, in squares of the task's scales
     VectorXd shares{};     ///< of the terms, in the order of the laws
     VectorXd known{};      ///< changes of the known parameters
@@ -28,7 +35,7 @@ class BlockRegression {
   };
 
   /// Both are thinned.
-  BlockRegression(const Blocks& blocks, VectorXd residuals, MatrixXd known);
+  BlockRegression(const Blocks& blocks, VectorXd residuals, MatrixXd known, BlockRegressionOptions options = {});
 
   /// Of shares within their bounds, or of any.
   [[nodiscard]] Score with(std::span<const Law* const> laws, bool bounded = true) const;
@@ -70,13 +77,20 @@ class BlockRegression {
                                      bool is_own) const;
   /// Of the rows that lie out of their slack, from its nearer end: a fit by an active set.
   [[nodiscard]] Products settled(const Terms& terms) const;
+  /// What fits without each block leave in it: Σr² by block and output.
+  [[nodiscard]] MatrixXd left_with_slack(const Terms& terms, const std::vector<VectorXd>& without) const;
+  /// What is left of each row without laws, of the bare fit that does not see its block.
+  [[nodiscard]] VectorXd gap_without_laws() const;
 
   const Blocks& blocks_;
   VectorXd residuals_;
   MatrixXd known_;
+  VectorXd reach_;
+  bool is_held_to_tests_;
   VectorXd weights_{};             ///< by output
   std::vector<MatrixXd> grams_{};  ///< of `known`, by run, not weighted
   MatrixXd counts_{};              ///< rows by block and output
+  VectorXd gap_{};                 ///< without laws
 };
 
 }  // namespace hysteron::diagnosis

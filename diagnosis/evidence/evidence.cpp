@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <set>
 #include <utility>
 
 #include "diagnosis/evidence/gap_budget.hpp"
@@ -23,56 +24,88 @@ namespace {
 
 /// A space with its laws, and the sets of them that were fitted.
 struct Explored {
-  std::unique_ptr<Space> space{};
-  std::unique_ptr<Blocks> blocks{};
-  std::unique_ptr<std::vector<Law>> laws{};  ///< the search points into them
-  std::unique_ptr<BlockRegression> regression{};
-  std::unique_ptr<SetSearch> search{};
+  std::shared_ptr<const Space> space{};
+  std::shared_ptr<const Blocks> blocks{};
+  std::shared_ptr<const std::vector<Law>> laws{};  ///< the search points into them
+  std::shared_ptr<const BlockRegression> regression{};
+  std::shared_ptr<const SetSearch> search{};
   LawSet bare{};
 };
+
+/// By the larger of where each known parameter was tuned to and where it is calibrated; one that is 0 may go anywhere.
+VectorXd reach_of(const Task& task, const Explanation& calibrated) {
+  VectorXd result(std::ssize(task.known));
+  for (Index j = 0; j < result.size(); ++j) {
+    const double size =
+        std::max(std::abs(task.known[static_cast<std::size_t>(j)].start), std::abs(calibrated.fit.x[j]));
+    result[j] = size > 0.0 ? policy::reach.value * size : std::numeric_limits<double>::infinity();
+  }
+  return result;
+}
+
+/// The same laws, held to their tests or not.
+Explored weighed(Explored result, const VectorXd& reach, bool is_held_to_tests, unsigned threads) {
+  BlockRegression regression(*result.blocks, result.blocks->thinned(result.space->residuals()).col(0),
+                             result.blocks->thinned(result.space->known()),
+                             {.reach = reach, .is_held_to_tests = is_held_to_tests});
+  regression.weigh(regression.bare().held_out);
+  result.regression = std::make_shared<const BlockRegression>(std::move(regression));
+  result.search = std::make_shared<const SetSearch>(*result.laws, *result.regression, threads);
+  result.bare = result.search->bare();
+  return result;
+}
 
 Explored explored(const Task& task, const Explanation& calibrated, std::unique_ptr<Space> space,
                   const EvidenceOptions& options) {
   Explored result{.space = std::move(space)};
   result.blocks =
-      std::make_unique<Blocks>(task, result.space->outputs(), static_cast<std::size_t>(policy::blocks.value),
-                               static_cast<std::size_t>(policy::rows.value));
-  result.laws = std::make_unique<std::vector<Law>>(laws_of(task, *result.space, calibrated, *result.blocks,
-                                                           {.effects = options.effects, .threads = options.threads}));
-  result.regression =
-      std::make_unique<BlockRegression>(*result.blocks, result.blocks->thinned(result.space->residuals()).col(0),
-                                        result.blocks->thinned(result.space->known()));
-  result.regression->weigh(result.regression->bare().held_out);
-  result.search = std::make_unique<SetSearch>(*result.laws, *result.regression, options.threads);
-  result.bare = result.search->bare();
-  return result;
+      std::make_shared<const Blocks>(task, result.space->outputs(), static_cast<std::size_t>(policy::blocks.value),
+                                     static_cast<std::size_t>(policy::rows.value));
+  result.laws = std::make_shared<const std::vector<Law>>(laws_of(
+      task, *result.space, calibrated, *result.blocks, {.effects = options.effects, .threads = options.threads}));
+  return weighed(std::move(result), reach_of(task, calibrated), true, options.threads);
 }
 
 bool has_place(const Space& space, const std::string& edge) {
   return std::ranges::any_of(space.places(), [&](const Space::Place& place) { return place.edge.name == edge; });
 }
 
-/// Whether a set acts behind the place where what is missing can be seen.
-bool is_elsewhere(const LawSet& set, const std::vector<Explored>& spaces) {
-  return set.space + 1 < spaces.size() && std::ranges::any_of(set.laws, [&](std::size_t law) {
-           return !has_place(*spaces.back().space, (*spaces[set.space].laws)[law].edge);
-         });
-}
-
-/// The sets of all spaces. Those of the outputs that need no place but where what is missing can be seen are there
-/// twice: in the space of the missing signal to be told, here to be measured by.
-struct AllSets {
+/// The sets of one view: what is compared in one space, and what acts behind the places of that one, from the outputs.
+/// Those of the outputs that need no other place are there to be measured by.
+struct View {
+  std::size_t own = 0;  ///< the space
   std::vector<LawSet> told{};
   std::vector<LawSet> yardsticks{};
 };
-AllSets all_sets(std::vector<Explored>& spaces) {
-  AllSets result;
+
+bool is_of_outputs(const LawSet& set, const std::vector<Explored>& spaces) {
+  return spaces[set.space].space->name() == OutputSpace::title;
+}
+
+/// Whether a set acts behind the place where what is missing can be seen.
+bool is_elsewhere(const LawSet& set, const std::vector<Explored>& spaces, std::size_t own) {
+  return set.space != own && is_of_outputs(set, spaces) && std::ranges::any_of(set.laws, [&](std::size_t law) {
+           return !has_place(*spaces[own].space, (*spaces[set.space].laws)[law].edge);
+         });
+}
+
+/// A view for each space, that of the outputs, which are the first space, last: it has its own sets alone.
+std::vector<View> views_of(std::vector<Explored>& spaces) {
+  std::vector<View> result;
+  for (std::size_t own = spaces.size(); own-- > 0;) {
+    result.push_back({.own = own});
+  }
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     for (LawSet& set : spaces[i].search->run()) {
       set.space = i;
       set.log_square -= spaces[i].bare.log_square;
-      const bool last = i + 1 == spaces.size();
-      (last || is_elsewhere(set, spaces) ? result.told : result.yardsticks).push_back(std::move(set));
+      for (View& view : result) {
+        if (i == view.own || is_elsewhere(set, spaces, view.own)) {
+          view.told.push_back(set);
+        } else if (is_of_outputs(set, spaces)) {
+          view.yardsticks.push_back(set);
+        }
+      }
     }
   }
   return result;
@@ -85,7 +118,7 @@ struct Votes {
   std::map<std::string, double> by_record{};  ///< of families, each time alike
   std::map<std::pair<std::string, std::string>, double> members{};
 };
-Votes vote(const std::vector<Explored>& spaces, AllSets& sets, std::uint64_t seed, const Prior& prior,
+Votes vote(const std::vector<Explored>& spaces, View& sets, std::uint64_t seed, const Prior& prior,
            const Rules& rules) {
   std::mt19937_64 random(seed);
   std::exponential_distribution<double> weight(1.0);
@@ -99,7 +132,7 @@ Votes vote(const std::vector<Explored>& spaces, AllSets& sets, std::uint64_t see
   const auto entries = [&](std::vector<LawSet>& list, bool elsewhere) {
     std::vector<Entry> result;
     for (LawSet& set : list) {
-      if (is_elsewhere(set, spaces) == elsewhere) {
+      if (is_elsewhere(set, spaces, sets.own) == elsewhere) {
         result.push_back({.set = &set, .families = spaces[set.space].search->families_of(set)});
       }
     }
@@ -155,9 +188,13 @@ Votes vote(const std::vector<Explored>& spaces, AllSets& sets, std::uint64_t see
       votes.families[family] += counts;
       votes.by_record[family] += 1.0;
     }
+    std::set<std::pair<std::string, std::string>> members;  // each once, however often the set has it
     for (const std::size_t i : best->set->laws) {
       const Law& law = (*spaces[best->set->space].laws)[i];
-      votes.members[{law.family, law.effect}] += counts;
+      members.emplace(law.family, law.effect);
+    }
+    for (const auto& member : members) {
+      votes.members[member] += counts;
     }
   }
   for (LawSet& set : sets.told) {
@@ -300,6 +337,10 @@ MissingPicture picture_of(const Explored& there, const LawSet& set, const std::s
 
 }  // namespace
 
+double weight_of_family(const FamilyFinding& one) {
+  return one.probability * std::max(0.0, one.closed);
+}
+
 bool is_worth_telling(const Evidence& evidence, Rules& rules) {
   if (evidence.families.empty() || evidence.sets.empty()) {
     return false;
@@ -315,7 +356,7 @@ struct Weighing::Sets {
   const Task* task = nullptr;
   VectorXd known{};  ///< the known parameters that the laws are found about
   std::vector<Explored> spaces{};
-  AllSets all{};
+  std::vector<View> views{};
 };
 
 Weighing::Weighing(const Task& task, const std::string& top, const Explanation& calibrated,
@@ -339,39 +380,52 @@ Weighing::Weighing(const Task& task, const std::string& top, const Explanation& 
   }
   if (missing) {
     spaces.push_back(explored(asked, fitted, std::move(missing), options));
+    const bool has_open_rows =
+        std::ranges::any_of(*spaces.back().laws, [](const Law& law) { return law.slacks.cols() > 0; });
+    // What a friction may hold at rest is worth a proposal; whether it does, a run of the diagram says.
+    if (has_open_rows && !open) {
+      spaces.push_back(weighed(spaces.back(), reach_of(asked, fitted), false, options.threads));
+    }
   }
-  sets_->all = all_sets(spaces);
+  sets_->views = views_of(spaces);
 }
 
 Weighing::~Weighing() = default;
 
-std::optional<GapBudget> Weighing::budget(const std::string& output) const {
-  return gap_budget(*sets_->task, *sets_->spaces.back().space, output, threads_);
+std::size_t Weighing::views() const {
+  return sets_->views.size();
 }
 
-void Weighing::strike_out_first() {
-  std::vector<LawSet>& told = sets_->all.told;
+std::optional<GapBudget> Weighing::budget(std::size_t view, const std::string& output) const {
+  return gap_budget(*sets_->task, *sets_->spaces[sets_->views[view].own].space, output, threads_);
+}
+
+void Weighing::strike_out_first(std::size_t view) {
+  std::vector<LawSet>& told = sets_->views[view].told;
   if (!told.empty()) {
     told.erase(told.begin());
   }
 }
 
-Evidence Weighing::told(const Rules& rules) {
+Evidence Weighing::told(const Rules& rules, std::size_t view) {
   const std::vector<Explored>& spaces = sets_->spaces;
-  std::vector<LawSet>& sets = sets_->all.told;
+  std::vector<LawSet>& sets = sets_->views[view].told;
   for (LawSet& set : sets) {
     set.probability = 0.0;
   }
   if (sets.empty()) {
     return {};
   }
-  const Votes votes = vote(spaces, sets_->all, seed_, prior_, rules);
+  const Votes votes = vote(spaces, sets_->views[view], seed_, prior_, rules);
   std::ranges::stable_sort(sets, [](const LawSet& a, const LawSet& b) { return a.probability > b.probability; });
 
   Evidence result;
   result.is_open_loop = sets_->open.has_value();
+  std::set<const std::vector<Law>*> laws;
   for (const Explored& one : spaces) {
-    result.tried += one.laws->size();
+    if (laws.insert(one.laws.get()).second) {
+      result.tried += one.laws->size();
+    }
   }
   for (const auto& [family, probability] : votes.families) {
     FamilyFinding finding{.family = family, .probability = probability, .by_record = votes.by_record.at(family)};
@@ -397,13 +451,7 @@ Evidence Weighing::told(const Rules& rules) {
     }
     result.families.push_back(std::move(finding));
   }
-  // What closes next to nothing is no cause, however surely it is there.
-  std::ranges::stable_sort(result.families, [](const FamilyFinding& a, const FamilyFinding& b) {
-    const auto weight = [](const FamilyFinding& one) {
-      return one.probability * std::min(1.0, std::max(0.0, one.closed) / (4.0 * policy::relevant.value));
-    };
-    return weight(a) > weight(b);
-  });
+  std::ranges::stable_sort(result.families, std::ranges::greater(), weight_of_family);
   constexpr std::size_t most_told = 40;
   for (const LawSet& set : sets) {
     if (set.probability > 0.0 && result.sets.size() < most_told) {

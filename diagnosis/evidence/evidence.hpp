@@ -37,14 +37,18 @@ class Weighing {
   Weighing& operator=(const Weighing&) = delete;
   ~Weighing();
 
-  /// Of all sets that are not struck out; empty where none is left.
-  [[nodiscard]] Evidence told(const Rules& rules = {});
+  /// In how many ways the sets are held against each other: first where what is missing can be seen, last at the
+  /// measured outputs. At least one.
+  [[nodiscard]] std::size_t views() const;
+
+  /// Of all sets of a view that are not struck out; empty where none is left.
+  [[nodiscard]] Evidence told(const Rules& rules = {}, std::size_t view = 0);
 
   /// The gap by kinds, where what is missing can be seen; else of a measured output, by its name.
-  [[nodiscard]] std::optional<GapBudget> budget(const std::string& output) const;
+  [[nodiscard]] std::optional<GapBudget> budget(std::size_t view, const std::string& output) const;
 
-  /// The most probable set of what was told last is none.
-  void strike_out_first();
+  /// The most probable set of what was told last of a view is none.
+  void strike_out_first(std::size_t view);
 
  private:
   struct Sets;
@@ -53,6 +57,9 @@ class Weighing {
   Prior prior_;
   std::unique_ptr<Sets> sets_;
 };
+
+/// What it closes, by how probable it is: what closes next to nothing is no cause, however surely it is there.
+[[nodiscard]] double weight_of_family(const FamilyFinding& one);
 
 /// Whether its first family is to be told.
 [[nodiscard]] bool is_worth_telling(const Evidence& evidence, Rules& rules);

@@ -136,10 +136,14 @@ void tell(const Evidence& evidence, const Rules& rules, Diagnosis& result) {
       result.rivals.push_back(std::move(rival));
     }
   }
+  result.confidence = confidence_of(evidence, first);
+}
+
+double confidence_of(const Evidence& evidence, const SetFinding& set) {
   // √closed is the correlation of what the set predicts with what is missing: of a gap that is mostly open, a cause
   // that no effect of the library is may be all there is.
-  const double correlation = std::sqrt(std::clamp(first.closed, 0.0, 1.0));
-  result.confidence = std::min(evidence.families.front().probability * correlation, 0.99);
+  const double correlation = std::sqrt(std::clamp(set.closed, 0.0, 1.0));
+  return std::min(evidence.families.front().probability * correlation, 0.99);
 }
 
 std::string sentence_of(const Diagnosis& found, const Rules& rules) {

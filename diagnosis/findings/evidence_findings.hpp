@@ -12,6 +12,9 @@ namespace hysteron::diagnosis {
 /// that the fitted diagram holds keep the numbers of its fit.
 void tell(const Evidence& evidence, const Rules& rules, Diagnosis& result);
 
+/// That the first family is a cause, and that what the set predicts is what is missing.
+[[nodiscard]] double confidence_of(const Evidence& evidence, const SetFinding& set);
+
 /// "Dry friction at SPEED.XIN (coulomb_friction) explains 80 % of the gap on stretches not fitted, …"
 [[nodiscard]] std::string sentence_of(const Diagnosis& found, const Rules& rules);
 

@@ -98,6 +98,8 @@ void add_verdict(const Judged& judged, const Answer& answer, const Explanation& 
   result.confidence = confidence(findings, result, rules);
   if (judged.evidence.is_told) {
     tell(judged.evidence, rules, result);
+  } else if (answer.is_named() && !judged.evidence.families.empty()) {
+    result.confidence = confidence_of(judged.evidence, judged.evidence.sets.front());
   }
   const std::vector<Edge> edges = edges_of_text(record.input.text, record.top);
   std::vector<LeftOut> left_out = record.left_out;

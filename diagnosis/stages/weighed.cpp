@@ -7,6 +7,7 @@
 #include "diagnosis/evidence/explained.hpp"
 #include "diagnosis/evidence/gap_budget.hpp"
 #include "diagnosis/evidence/output_space.hpp"
+#include "diagnosis/stages/proposals.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -18,6 +19,34 @@ bool leaves_a_cause(const Judged& judged, const Answer& answer, Rules& rules) {
   const double gap = std::max(judged.calibrated().fit.cost - floor, left);
   return judged.is_related && (answer.verdict == Verdict::Partial || answer.verdict == Verdict::Unknown) &&
          rules.is_above(policy::unexplained, left / gap);
+}
+
+/// The most probable set that a run of the whole diagram does not refute.
+Told told_in(Weighing& weighing, std::size_t view, const Judged& judged, const DiagnosisOptions& options,
+             Rules& rules) {
+  const Cleaned& record = judged.record;
+  const Explanation& calibrated = judged.calibrated();
+  Told result{.view = view};
+  for (int run = 0; run < static_cast<int>(policy::runs.value); ++run) {
+    result.evidence = weighing.told(rules, view);
+    if (!is_worth_telling(result.evidence, rules)) {
+      result.fitted = {};
+      return result;
+    }
+    result.fitted = explained(record.task, record.top, result.evidence.sets.front(), calibrated,
+                              {.effects = options.effects,
+                               .columns = record.unused,
+                               .threads = options.threads,
+                               .is_open_loop = result.evidence.is_open_loop,
+                               .floor_cost = record.floor_cost},
+                              rules);
+    if (!result.fitted.refuted || result.evidence.is_open_loop) {
+      result.evidence.is_told = true;
+      return result;
+    }
+    weighing.strike_out_first(view);
+  }
+  return result;
 }
 
 }  // namespace
@@ -39,32 +68,46 @@ Judged weighed(Judged judged, const Answer& answer, const DiagnosisOptions& opti
                      .threads = options.threads,
                      .seed = options.seed,
                      .prior = options.prior});
-  judged.budget = weighing.budget(output);
-  for (int run = 0; run < static_cast<int>(policy::runs.value); ++run) {
-    Evidence evidence = weighing.told(rules);
-    if (run == 0) {
-      judged.tried += evidence.tried;
+  std::vector<Told> told;
+  std::size_t shown = 0;  // the view whose gap is shown by kinds
+  Evidence untold;
+  for (std::size_t view = 0; view < weighing.views(); ++view) {
+    Told one = told_in(weighing, view, judged, options, rules);
+    if (view == 0) {
+      judged.tried += one.evidence.tried;
+      untold = one.evidence;
     }
-    evidence.is_told = is_worth_telling(evidence, rules);
-    if (!evidence.is_told) {
-      judged.evidence = std::move(evidence);
+    const bool is_open_loop = one.evidence.is_open_loop;
+    if (one.evidence.is_told) {
+      told.push_back(std::move(one));
+    }
+    if (is_open_loop) {
       break;
     }
-    const Explained fitted = explained(record.task, record.top, evidence.sets.front(), calibrated,
-                                       {.effects = options.effects,
-                                        .columns = record.unused,
-                                        .threads = options.threads,
-                                        .is_open_loop = evidence.is_open_loop,
-                                        .floor_cost = record.floor_cost},
-                                       rules);
-    if (!fitted.refuted || evidence.is_open_loop) {
-      judged.choose(fitted.explanation ? *fitted.explanation : calibrated);
-      judged.unrepeatable.reset();
-      judged.evidence = std::move(evidence);
-      break;
-    }
-    weighing.strike_out_first();
   }
+  // A run of the loop is no judge of a plant that was taken out of it: the loop hides the plant.
+  const bool is_open_loop = !told.empty() && told.front().evidence.is_open_loop;
+  const Runs runs = runs_of(told, judged, options, rules);
+  if (is_open_loop || runs.are_for_told()) {
+    const Told& best = told[is_open_loop ? 0 : runs.best_told()];
+    shown = best.view;
+    judged.evidence = best.evidence;
+    judged.choose(best.fitted.explanation ? *best.fitted.explanation : calibrated);
+    judged.unrepeatable.reset();
+  } else if (!runs.searched.empty()) {
+    shown = weighing.views() - 1;
+    judged.evidence = evidence_of_search(runs);
+    if (const std::size_t best = runs.best_searched(); best != runs.told) {  // the first one is chosen already
+      judged.choose(*runs.searched[best - runs.told]);
+      judged.unrepeatable.reset();
+    }
+  } else {
+    judged.evidence = std::move(untold);
+  }
+  if (!is_open_loop && !runs.sets.empty()) {
+    weigh_families(runs, told, judged.evidence);
+  }
+  judged.budget = weighing.budget(shown, output);
   return judged;
 }
 

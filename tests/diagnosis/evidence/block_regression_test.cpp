@@ -133,6 +133,61 @@ TEST(BlockRegression, WhatLiesWithinTheSlackOfALawIsNotLeft) {
   EXPECT_GT(regression.with(sharp_laws).held_out.sum(), 0.5 * machine.missing.squaredNorm());
 }
 
+/// A friction whose speed has no sign anywhere could hold everything, and says nothing.
+TEST(BlockRegression, ALawThatLeavesAllRowsOpenClosesNothing) {
+  SlidesAndRests machine(120);
+  machine.law.responses.setZero();
+  machine.law.slacks.setOnes();
+  const BlockRegression regression(machine.blocks, machine.missing, MatrixXd(120, 0), {.is_held_to_tests = true});
+  const Law* const laws[] = {&machine.law};
+  const BlockRegression::Score score = regression.with(laws);
+  ASSERT_TRUE(score.allowed);
+  EXPECT_NEAR(score.held_out.sum(), regression.bare().held_out.sum(), 1e-9 * machine.missing.squaredNorm());
+}
+
+/// What it leaves where it can be tested is charged where it cannot.
+TEST(BlockRegression, OpenRowsAreChargedAsTestedOnes) {
+  SlidesAndRests machine(120);
+  test::Noise noise(4);
+  double tested = 0.0;
+  double left = 0.0;
+  double open = 0.0;
+  for (Index k = 0; k < machine.missing.size(); ++k) {
+    if (machine.law.slacks(k, 0) == 0.0) {
+      const double error = 0.5 * noise();
+      machine.missing[k] += error;
+      tested += machine.missing[k] * machine.missing[k];
+      left += error * error;
+    } else {
+      open += machine.missing[k] * machine.missing[k];
+    }
+  }
+  const BlockRegression regression(machine.blocks, machine.missing, MatrixXd(120, 0), {.is_held_to_tests = true});
+  const Law* const laws[] = {&machine.law};
+  const BlockRegression::Score score = regression.with(laws);
+  ASSERT_TRUE(score.allowed);
+  EXPECT_NEAR(score.held_out.sum() / (left + left / tested * open), 1.0, 0.1);
+}
+
+/// Two nearly equal columns would cancel, and what is between them would be a cause.
+TEST(BlockRegression, AKnownParameterMovesNoFurtherThanItsReach) {
+  constexpr std::size_t samples = 60;
+  const Task task = one_output(samples);
+  const Blocks blocks(task, 1, 5, 1000);
+  test::Noise noise(5);
+  const VectorXd speed = white_column(noise, samples);
+  const VectorXd error = 1e-3 * white_column(noise, samples);
+  const Law law = free_law(speed + error);
+  const Law* const laws[] = {&law};
+  const auto is_allowed = [&](double reach) {
+    return BlockRegression(blocks, 500.0 * error, speed, {.reach = VectorXd::Constant(1, reach)}).with(laws).allowed;
+  };
+  EXPECT_FALSE(is_allowed(10.0));
+  EXPECT_TRUE(is_allowed(1000.0));
+  EXPECT_TRUE(
+      BlockRegression(blocks, 500.0 * error, speed, {.reach = VectorXd::Constant(1, 10.0)}).with(laws, false).allowed);
+}
+
 TEST(BlockRegression, WhatIsBeyondTheSlackCountsFromItsEdge) {
   SlidesAndRests machine(120);
   machine.missing[12] = 2.7;  // at rest

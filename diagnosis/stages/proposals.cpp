@@ -1,0 +1,200 @@
+#include "diagnosis/stages/proposals.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// How many fitted sets of a search are held against what the evidence tells.
+constexpr std::size_t most_of_search = 40;
+
+/// What stands for the search: its fitted sets, where one of them was chosen.
+std::vector<const Explanation*> searched_sets(const Judged& judged) {
+  std::vector<const Explanation*> result;
+  if (judged.chosen().variant.effects.empty()) {
+    return result;
+  }
+  result.push_back(&judged.chosen());
+  for (const Weighed& one : judged.judgement().fitted) {
+    const bool is_fitted = one.explanation->fit.residuals.size() == judged.calibrated().fit.residuals.size();
+    if (result.size() < most_of_search && is_fitted && one.explanation != result.front() &&
+        !one.explanation->variant.effects.empty()) {
+      result.push_back(one.explanation);
+    }
+  }
+  return result;
+}
+
+RunSet run_of(const Explanation& one) {
+  return {.residuals = one.fit.residuals, .families = families_of(one.variant), .effects = one.variant.effects.size()};
+}
+
+/// Of what was told and has no run: what it promises of the calibrated diagram's.
+RunSet promise_of(const Evidence& told, const Explanation& calibrated) {
+  const SetFinding& first = told.sets.front();
+  std::set<std::string> families;
+  for (const LawFinding& law : first.laws) {
+    families.insert(law.family);
+  }
+  return {.residuals = calibrated.fit.residuals,
+          .left = 1.0 - first.closed,
+          .families = {families.begin(), families.end()},
+          .effects = first.laws.size()};
+}
+
+std::size_t best_between(const std::vector<double>& votes, std::size_t from, std::size_t to) {
+  const auto begin = votes.begin();
+  return static_cast<std::size_t>(
+      std::max_element(begin + static_cast<std::ptrdiff_t>(from), begin + static_cast<std::ptrdiff_t>(to)) - begin);
+}
+
+bool holds(const RunSet& set, const std::string& family) {
+  return std::ranges::find(set.families, family) != set.families.end();
+}
+
+/// Of the search's votes for a family, those for sets that hold this member of it.
+double part_of_family(const Runs& runs, const std::string& family, const std::string& effect) {
+  double all = 0.0;
+  double own = 0.0;
+  for (std::size_t i = 0; i < runs.searched.size(); ++i) {
+    if (holds(runs.sets[runs.told + i], family)) {
+      const double votes = runs.votes[runs.told + i];
+      all += votes;
+      own += std::ranges::count(runs.searched[i]->variant.effects, effect, &Applied::effect) > 0 ? votes : 0.0;
+    }
+  }
+  return all > 0.0 ? own / all : 0.0;
+}
+
+/// The families of a set of the search, each with its part of what the set closes, by what each closes alone.
+void add_searched(const Runs& runs, std::size_t set, const Explanation& fitted, Evidence& evidence) {
+  const std::vector<std::string>& families = runs.sets[set].families;
+  double sum = 0.0;
+  for (const std::string& family : families) {
+    sum += runs.alone(family);
+  }
+  const std::vector<EffectKind> kinds = kinds_in(fitted.variant);
+  for (const std::string& family : families) {
+    if (std::ranges::find(evidence.families, family, &FamilyFinding::family) != evidence.families.end()) {
+      continue;
+    }
+    const double alone = runs.alone(family);
+    FamilyFinding finding{.family = family, .alone = alone};
+    finding.closed = runs.closed[set] * (sum > 0.0 ? alone / sum : 1.0 / static_cast<double>(families.size()));
+    for (const Applied& one : fitted.variant.effects) {
+      if (family_of(kinds, one) == family) {
+        finding.effect = one.effect;
+        finding.edge = in_the_diagram(one.edge, fitted.variant.effects);
+        break;
+      }
+    }
+    finding.member = part_of_family(runs, family, finding.effect);
+    evidence.families.push_back(std::move(finding));
+  }
+}
+
+}  // namespace
+
+std::size_t Runs::best_told() const {
+  return best_between(votes, 0, told);
+}
+
+std::size_t Runs::best_searched() const {
+  return best_between(votes, told, votes.size());
+}
+
+bool Runs::are_for_told() const {
+  const double of_search = std::accumulate(votes.begin() + static_cast<std::ptrdiff_t>(told), votes.end(), 0.0);
+  return told > 0 && votes[best_told()] >= of_search;
+}
+
+double Runs::alone(const std::string& family) const {
+  double result = 0.0;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    if (sets[i].families.size() == 1 && sets[i].families.front() == family) {
+      result = std::max(result, closed[i]);
+    }
+  }
+  return result;
+}
+
+Runs runs_of(const std::vector<Told>& told, const Judged& judged, const DiagnosisOptions& options, const Rules& rules) {
+  const Explanation& calibrated = judged.calibrated();
+  Runs result{.searched = searched_sets(judged)};
+  for (const Told& one : told) {
+    result.sets.push_back(one.fitted.explanation ? run_of(*one.fitted.explanation)
+                                                 : promise_of(one.evidence, calibrated));
+  }
+  result.told = told.size();
+  for (const Explanation* const one : result.searched) {
+    result.sets.push_back(run_of(*one));
+  }
+  if (!result.searched.empty()) {
+    result.sets[result.told].residuals = judged.residuals();
+  }
+  result.votes = votes_of_runs(judged.record.task, result.sets, options.seed, options.prior, rules);
+  const double gap = calibrated.fit.residuals.squaredNorm();
+  for (const RunSet& one : result.sets) {
+    result.closed.push_back(1.0 - one.left * one.residuals.squaredNorm() / gap);
+  }
+  return result;
+}
+
+Evidence evidence_of_search(const Runs& runs) {
+  Evidence result;
+  std::vector<std::size_t> order;
+  for (std::size_t i = runs.told; i < runs.sets.size(); ++i) {
+    if (runs.votes[i] > 0.0) {
+      order.push_back(i);
+    }
+  }
+  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) { return runs.votes[i]; });
+  for (const std::size_t i : order) {
+    const Explanation& fitted = *runs.searched[i - runs.told];
+    add_searched(runs, i, fitted, result);
+    SetFinding set{.space = "runs", .probability = runs.votes[i], .closed = runs.closed[i]};
+    const std::vector<EffectKind> kinds = kinds_in(fitted.variant);
+    for (const Applied& one : fitted.variant.effects) {
+      LawFinding law{.effect = one.effect,
+                     .family = family_of(kinds, one),
+                     .edge = in_the_diagram(one.edge, fitted.variant.effects)};
+      for (const auto& [pin, driver] : one.wires) {
+        law.drivers.push_back(driver);
+      }
+      const auto family = std::ranges::find(result.families, law.family, &FamilyFinding::family);
+      law.closed = family == result.families.end() ? 0.0 : family->closed;
+      set.laws.push_back(std::move(law));
+    }
+    result.sets.push_back(std::move(set));
+  }
+  return result;
+}
+
+void weigh_families(const Runs& runs, const std::vector<Told>& told, Evidence& evidence) {
+  for (FamilyFinding& family : evidence.families) {
+    double probability = 0.0;
+    double by_record = 0.0;
+    for (std::size_t view = 0; view < told.size(); ++view) {
+      const std::vector<FamilyFinding>& there = told[view].evidence.families;
+      if (const auto found = std::ranges::find(there, family.family, &FamilyFinding::family); found != there.end()) {
+        probability += runs.votes[view] * found->probability;
+        by_record += runs.votes[view] * found->by_record;
+      }
+    }
+    for (std::size_t i = runs.told; i < runs.sets.size(); ++i) {
+      if (holds(runs.sets[i], family.family)) {
+        probability += runs.votes[i];
+        by_record += runs.votes[i];
+      }
+    }
+    family.probability = probability;
+    family.by_record = by_record;
+  }
+  std::ranges::stable_sort(evidence.families, std::ranges::greater(), weight_of_family);
+}
+
+}  // namespace hysteron::diagnosis

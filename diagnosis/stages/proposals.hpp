@@ -1,0 +1,53 @@
+// What was proposed as the cause, each in its own way, and what the runs of the whole diagram say of it.
+//
+// The evidence tells a set in each of its views; the search has fitted sets of its own. The votes of the runs
+// (run_votes.hpp) say how probable each proposal is. A family is as probable as what tells it, times how probable it is
+// there.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "diagnosis/evidence/evidence.hpp"
+#include "diagnosis/evidence/explained.hpp"
+#include "diagnosis/evidence/run_votes.hpp"
+#include "diagnosis/stages/judged.hpp"
+
+namespace hysteron::diagnosis {
+
+/// What one view tells, and the diagram with it.
+struct Told {
+  std::size_t view = 0;
+  Evidence evidence{};
+  Explained fitted{};
+};
+
+/// All that was proposed, how probable each set is, and what it closes of the gap.
+struct Runs {
+  std::vector<RunSet> sets{};  ///< of what is told, then of the search
+  std::vector<double> votes{};
+  std::vector<double> closed{};
+  std::size_t told = 0;
+  std::vector<const Explanation*> searched{};
+
+  /// The most probable of what is told, and of the search; asked only where there is one.
+  [[nodiscard]] std::size_t best_told() const;
+  [[nodiscard]] std::size_t best_searched() const;
+  /// Whether what is told is more probable than all that the search has.
+  [[nodiscard]] bool are_for_told() const;
+  /// What a family closes by itself, in the best run that has no other.
+  [[nodiscard]] double alone(const std::string& family) const;
+};
+
+[[nodiscard]] Runs runs_of(const std::vector<Told>& told, const Judged& judged, const DiagnosisOptions& options,
+                           const Rules& rules);
+
+/// What the search tells, as evidence: its sets by the votes, their families each with its part of what a set closes,
+/// by what each closes alone.
+[[nodiscard]] Evidence evidence_of_search(const Runs& runs);
+
+/// Each family as probable as what tells it, in front what closes most with what is most probable.
+void weigh_families(const Runs& runs, const std::vector<Told>& told, Evidence& evidence);
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,87 @@
+#include "diagnosis/evidence/run_votes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/diagnosis/simulated_machine.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+constexpr std::size_t rows_of_output = 240;
+
+Task recorded(std::vector<std::string> outputs) {
+  Task task;
+  task.records.push_back(records::Record::even(0.0, 0.01, rows_of_output));
+  task.outputs = std::move(outputs);
+  return task;
+}
+
+/// A run that leaves noise of a size at each output.
+RunSet leaving(const std::vector<double>& sizes, std::vector<std::string> families, std::size_t effects,
+               std::uint64_t seed = 1) {
+  test::Noise noise(seed);
+  RunSet result{.residuals = VectorXd(static_cast<Index>(rows_of_output * sizes.size())),
+                .families = std::move(families),
+                .effects = effects};
+  for (Index row = 0; row < result.residuals.size(); ++row) {
+    result.residuals[row] = sizes[static_cast<std::size_t>(row) / rows_of_output] * noise();
+  }
+  return result;
+}
+
+std::vector<double> votes(const Task& task, const std::vector<RunSet>& sets, const Prior& prior = {}) {
+  return votes_of_runs(task, sets, 1, prior, {});
+}
+
+TEST(RunVotes, TheRunThatLeavesLeastIsTheMostProbable) {
+  const std::vector<double> found =
+      votes(recorded({"Y"}), {leaving({1.0}, {"creep"}, 1), leaving({0.5}, {"play"}, 1), leaving({0.9}, {"lag"}, 1)});
+  EXPECT_NEAR(std::accumulate(found.begin(), found.end(), 0.0), 1.0, 1e-12);
+  EXPECT_GT(found[1], 0.99);
+}
+
+TEST(RunVotes, OfRunsAlikeTheSimplerIsLikelierAndTheOtherIsNotRuledOut) {
+  const std::vector<double> found =
+      votes(recorded({"Y"}), {leaving({1.0}, {"lag"}, 1), leaving({1.0}, {"creep", "lag"}, 2)});
+  EXPECT_GT(found[0], found[1]);
+  EXPECT_GT(found[1], 0.1);
+}
+
+TEST(RunVotes, OfOneFormulaTwiceTheErrorIsTheSame) {
+  const std::vector<double> found =
+      votes(recorded({"Y"}), {leaving({1.0}, {"lag"}, 1), leaving({1.001}, {"lag"}, 1), leaving({3.0}, {"play"}, 1)});
+  EXPECT_EQ(found[0], 1.0);  // nearer in every draw, if by a thousandth
+}
+
+TEST(RunVotes, WithoutARunAPromiseCounts) {
+  RunSet promise = leaving({1.0}, {"play"}, 1);
+  promise.left = 0.1;
+  EXPECT_GT(votes(recorded({"Y"}), {leaving({0.9}, {"lag"}, 1), promise})[1], 0.99);
+  promise.left = 0.95;
+  EXPECT_LT(votes(recorded({"Y"}), {leaving({0.5}, {"lag"}, 1), promise})[1], 0.01);
+}
+
+/// Each output by its own scale: a tenth less of a small one counts as a tenth less of a large one.
+TEST(RunVotes, OutputsCountAlike) {
+  const std::vector<double> found =
+      votes(recorded({"Y", "Z"}), {leaving({100.0, 0.2}, {"lag"}, 1), leaving({90.0, 1.0}, {"play"}, 1)});
+  EXPECT_GT(found[0], 0.99);
+}
+
+TEST(RunVotes, SiblingsMakeTheirFamiliesMoreProbable) {
+  const std::vector<RunSet> sets{leaving({1.0}, {"lag"}, 1, 1), leaving({1.0}, {"play"}, 1, 2)};
+  const Prior prior({{{"play", 1.0}}, {{"play", 1.0}}, {{"play", 1.0}}});
+  EXPECT_GT(votes(recorded({"Y"}), sets, prior)[1], votes(recorded({"Y"}), sets)[1] + 0.1);
+}
+
+TEST(RunVotes, NoSetHasNoVotes) {
+  EXPECT_TRUE(votes(recorded({"Y"}), {}).empty());
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

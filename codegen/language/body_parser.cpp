@@ -142,6 +142,7 @@ void BodyParser::finish(body::Unit& unit, std::string_view end) {
       }
       advance();
       accept(Symbol::Semicolon);
+      statements(unit.statements);  // the standard has methods before the body
       continue;
     }
     unexpected(end);

@@ -52,5 +52,20 @@ TEST(BodyErrors, NameWhatThereIsInstead) {
             "the upper bound of this array, 2, is below the lower one, 5 / Write the lower one first: 2..5.");
 }
 
+/// By the standard methods stand before the body: what is behind them is read as the body.
+TEST(BodyErrors, ABodyBehindMethodsIsRead) {
+  Diagnostics found;
+  check(std::make_shared<const language::SourceFile>(language::parse(
+            "t",
+            "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT X : REAL; END_VAR VAR_OUTPUT Y : REAL; END_VAR\n"
+            "METHOD M : BOOL END_METHOD\nIF X > 0.0 THEN Y := X; END_IF;\nY := Z;\nEND_FUNCTION_BLOCK",
+            found)),
+        found);
+  ASSERT_EQ(found.all().size(), 2U);
+  EXPECT_EQ(found.all()[0].number, error::refused_in_body);
+  EXPECT_EQ(found.all()[0].place.line, 2U);
+  EXPECT_EQ(found.all()[1].place.line, 4U) << "Z is not declared";
+}
+
 }  // namespace
 }  // namespace hysteron::testing

@@ -1,5 +1,6 @@
 #include "codegen/backends/st/guards.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -14,13 +15,14 @@ constexpr double smallest_literal = std::numeric_limits<float>::min();
 
 }  // namespace
 
-Guards::Guards(const Routine& routine) : tape_(routine.tape), must_be_named_(routine.tape.size(), false) {
+Guards::Guards(const Graph& graph, const Routine& routine)
+    : graph_(graph), tape_(routine.tape), must_be_named_(routine.tape.size(), false) {
   for (ValueId id = 0; id < tape_.size(); ++id) {
     const Value& value = tape_[id];
     if (routine.uses[id] == 0) {
       continue;
     }
-    if (value.op == Op::Divide && !never_zero(value.args[1])) {
+    if (value.op == Op::Divide && !is_plain_divisor(value.args[1])) {
       name_with_operands(id, 2);
     } else if (value.op == Op::Power) {
       const PowerForm form = power_form(value);
@@ -44,6 +46,16 @@ void Guards::name_with_operands(ValueId id, std::size_t operands) {
   for (std::size_t i = 0; i < operands; ++i) {
     must_be_named_[tape_[id].args[i]] = true;
   }
+}
+
+bool Guards::may_be_infinite(ValueId id) const {
+  const Value& value = tape_[id];
+  if (value.op != Op::Parameter) {
+    return false;
+  }
+  const Parameter& parameter = graph_.parameters[value.index];
+  return !std::isfinite(parameter.field.preset) ||
+         std::ranges::any_of(parameter.value, [](double one) { return !std::isfinite(one); });
 }
 
 bool Guards::is_safe_divisor(ValueId id) const {

@@ -1,11 +1,15 @@
 // What a PLC must not be asked to compute: a division by zero, the power of a number below zero, an integer beyond its
 // range. Both sides of a choice are computed in Structured Text, so a guard stands at the operation itself.
+//
+// And what it would compute otherwise: a parameter that is infinite is the largest number there, and a division by it
+// is to give 0.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "codegen/backends/shared/routine.hpp"
+#include "codegen/graph/graph.hpp"
 
 namespace hysteron {
 
@@ -24,12 +28,15 @@ enum class PowerForm : std::uint8_t {
 
 class Guards {
  public:
-  explicit Guards(const Routine& routine);
+  Guards(const Graph& graph, const Routine& routine);
 
   /// By value: those that need statements of their own, and the operands that stand in these more than once.
   [[nodiscard]] const std::vector<bool>& must_be_named() const { return must_be_named_; }
 
-  [[nodiscard]] bool never_zero(ValueId id) const { return never_zero(id, nullptr); }
+  /// Whether a division by this is a plain one.
+  [[nodiscard]] bool is_plain_divisor(ValueId id) const { return never_zero(id, nullptr) && !may_be_infinite(id); }
+  /// A parameter that is infinite, here or by default: in Structured Text it is the largest number.
+  [[nodiscard]] bool may_be_infinite(ValueId id) const;
   [[nodiscard]] bool never_negative(ValueId id) const;
   [[nodiscard]] PowerForm power_form(const Value& power) const;
   /// Whether an integer may be divided by this one.
@@ -48,6 +55,7 @@ class Guards {
   [[nodiscard]] bool is_positive(ValueId id) const;
   void name_with_operands(ValueId id, std::size_t operands);
 
+  const Graph& graph_;
   const Tape& tape_;
   std::vector<bool> must_be_named_;
 };

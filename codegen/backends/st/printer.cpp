@@ -89,7 +89,7 @@ StPrinter::StPrinter(const Graph& graph, const Routine& routine, const Layout& l
       names_(names),
       dialect_(dialect),
       float32_(float32),
-      guards_(routine) {}
+      guards_(graph, routine) {}
 
 std::string StPrinter::text(ValueId id, int outer) const {
   std::string out;
@@ -107,11 +107,42 @@ std::string StPrinter::argument(ValueId id) const {
                                                            : st_typed_literal("DINT", literal(Type::Int, value));
 }
 
-/// The bits of an integer, as a DWORD.
+/// The bits of an integer, as a DWORD. What operations on bits make of others stays a DWORD between them.
 std::string StPrinter::pattern(ValueId id) const {
-  return is_integer(id)
-             ? fmt::format("DWORD#16#{:08X}", static_cast<std::uint32_t>(static_cast<std::int32_t>(tape()[id].literal)))
-             : "DINT_TO_DWORD(" + argument(id) + ")";
+  const Value& value = tape()[id];
+  if (is_integer(id)) {
+    return fmt::format("DWORD#16#{:08X}", static_cast<std::uint32_t>(static_cast<std::int32_t>(value.literal)));
+  }
+  const bool is_inside = !is_named(id);
+  if (is_inside && (value.op == Op::IntAnd || value.op == Op::IntOr || value.op == Op::IntXor)) {
+    return "(" + bits_text(value) + ")";
+  }
+  if (is_inside && (value.op == Op::IntShiftLeft || value.op == Op::IntShiftRight)) {
+    return bits_text(value);
+  }
+  return "DINT_TO_DWORD(" + argument(id) + ")";
+}
+
+/// An operation on the bits of integers, as a DWORD.
+std::string StPrinter::bits_text(const Value& value) const {
+  const ValueId first = value.args[0];
+  const ValueId second = value.args[1];
+  switch (value.op) {
+    case Op::IntAnd:
+      return pattern(first) + " AND " + pattern(second);
+    case Op::IntOr:
+      return pattern(first) + " OR " + pattern(second);
+    case Op::IntXor:
+      if (is_integer(second) && tape()[second].literal == -1.0) {
+        return "NOT " + pattern(first);
+      }
+      return pattern(first) + " XOR " + pattern(second);
+    default: {
+      std::string shifted;
+      print_call(value.op == Op::IntShiftLeft ? "SHL" : "SHR", {"IN", "N"}, {pattern(first), text(second)}, shifted);
+      return shifted;
+    }
+  }
 }
 
 void StPrinter::print_largest(bool negative, int outer, std::string& out) const {
@@ -254,7 +285,7 @@ void StPrinter::print_as_word(ValueId id, int outer, std::string& out) const {
     print_as_word(value.args[0], Strength::Loosest, word);
     return print_call(value.op == Op::IntShiftLeft ? "SHL" : "SHR", {"IN", "N"}, {word, text(value.args[1])}, out);
   }
-  append(out, "DWORD_TO_WORD(DINT_TO_DWORD(", argument(id), ") AND DWORD#16#0000FFFF)");  // some compilers saturate
+  append(out, "DWORD_TO_WORD(", pattern(id), " AND DWORD#16#0000FFFF)");  // some compilers saturate
 }
 
 /// AND, OR and XOR of two WORDs, and NOT as what turns every bit.
@@ -336,16 +367,9 @@ void StPrinter::print_special(const Value& value, int outer, std::string& out) c
     case Op::IntAnd:
     case Op::IntOr:
     case Op::IntXor:
-      return append(out, "DWORD_TO_DINT(", pattern(first),
-                    value.op == Op::IntAnd ? " AND " : (value.op == Op::IntOr ? " OR " : " XOR "),
-                    pattern(value.args[1]), ")");
     case Op::IntShiftLeft:
-    case Op::IntShiftRight: {
-      std::string shifted;
-      print_call(value.op == Op::IntShiftLeft ? "SHL" : "SHR", {"IN", "N"}, {pattern(first), text(value.args[1])},
-                 shifted);
-      return append(out, "DWORD_TO_DINT(", shifted, ")");
-    }
+    case Op::IntShiftRight:
+      return append(out, "DWORD_TO_DINT(", bits_text(value), ")");
     case Op::WordToInt:
       return append(out, "WORD_TO_DINT(", text(first), ")");
     case Op::IntToWord:

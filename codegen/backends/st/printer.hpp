@@ -84,6 +84,7 @@ class StPrinter final : public ExpressionPrinter {
   void print_power_inside(const Value& value, int outer, std::string& out) const;
   [[nodiscard]] std::string argument(ValueId id) const;
   [[nodiscard]] std::string pattern(ValueId id) const;
+  [[nodiscard]] std::string bits_text(const Value& value) const;
   /// A literal of an integer, which the text writes where it is used.
   [[nodiscard]] bool is_integer(ValueId id) const { return tape()[id].op == Op::IntLiteral && !is_named(id); }
   [[nodiscard]] bool is_word(ValueId id) const;

@@ -171,7 +171,7 @@ void StWriter::define(ValueId id, std::string_view name, std::string& text) {
 void StWriter::set_variable(const std::string& target, ValueId id, std::string& text) {
   const Value& value = routine.tape[id];
   const Guards& guards = printer_.guards();
-  if (value.op == Op::Divide && !guards.never_zero(value.args[1])) {
+  if (value.op == Op::Divide && !guards.is_plain_divisor(value.args[1])) {
     return define_quotient(value, target, text);
   }
   if ((value.op == Op::IntDivide || value.op == Op::IntModulo) && !guards.is_safe_divisor(value.args[1])) {
@@ -186,7 +186,8 @@ void StWriter::set_variable(const std::string& target, ValueId id, std::string& 
   assign(target, id, text);
 }
 
-/// By 0, a number with the sign of the numerator that is as large as can be; 0 / 0 is 0.
+/// By 0, a number with the sign of the numerator that is as large as can be; 0 / 0 is 0. By a parameter that is
+/// infinite, a 0 with the sign of the numerator.
 void StWriter::define_quotient(const Value& value, const std::string& name, std::string& text) {
   const std::string above = printer_.text(value.args[0], Strength::Primary);
   const std::string below = printer_.text(value.args[1], Strength::Primary);
@@ -203,7 +204,12 @@ void StWriter::define_quotient(const Value& value, const std::string& name, std:
   } else {
     printer_.print_call("SEL", {"G", "IN0", "IN1"}, {above + " < " + zero, positive, lowest}, limit);
   }
-  append(text, fmt::format("IF {2} <> {3} THEN {0} := {1} / {2};\n", name, above, below, zero));
+  std::string begin = "IF";
+  if (printer_.guards().may_be_infinite(value.args[1])) {
+    append(text, fmt::format("IF {} >= {} THEN {} := {} * {};\n", below, largest, name, zero, above));
+    begin = std::string(indentation) + "ELSIF";
+  }
+  append(text, fmt::format("{4} {2} <> {3} THEN {0} := {1} / {2};\n", name, above, below, zero, begin));
   line(fmt::format("ELSE {} := {}; END_IF;", name, limit), text);
 }
 

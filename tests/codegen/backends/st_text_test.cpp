@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cctype>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "codegen/backends/st/words.hpp"
+#include "codegen/interpreter/machine.hpp"
 #include "support/errors.hpp"
 #include "tests/codegen/backends/st_as_cpp.hpp"
 #include "tests/codegen/random_program.hpp"
@@ -111,6 +114,40 @@ TEST(StText, ABoundThatIsNoneIsTheLargestNumber) {
               HasSubstr("L_MX : REAL := 3.4028235E38;"));
 }
 
+/// The outputs of a program over steps of SP and PV.
+std::vector<double> outputs_over(const Program& program, std::span<const std::array<double, 2>> rows) {
+  Machine<double> machine(program, 1e-3);
+  for (std::size_t i = 2; i < program.graph.inputs.size(); ++i) {  // of a text that was generated: RESET, parameters
+    machine.set_input(i, program.graph.inputs[i].preset);
+  }
+  std::vector<double> outputs;
+  for (const auto& row : rows) {
+    machine.set_input(0, row[0]);
+    machine.set_input(1, row[1]);
+    machine.step();
+    outputs.push_back(machine.output(0));
+  }
+  return outputs;
+}
+
+TEST(StText, AnIntegralThatIsNoneStaysNone) {
+  const std::string diagram =
+      "FUNCTION_BLOCK B (* @ts 1ms *) VAR_INPUT SP, PV : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR C : HY_PID; "
+      "END_VAR C(SP := SP, PV := PV); Y := C.XOUT; END_FUNCTION_BLOCK";
+  constexpr std::array<std::array<double, 2>, 5> rows{{{1.0, 0.0}, {1.0, 1.0}, {0.0, 1e30}, {2.0, 2.0}, {0.0, 1.0}}};
+  const std::vector<double> wanted = outputs_over(compile_text(diagram), rows);
+  ASSERT_EQ(wanted[1], 0.0);
+  const Program program = compile_text(diagram);
+  const StOptions options{.dialect = *st_dialect("portable")};
+  for (const auto& files : {generate_st(program, options), generate_st_structured(program, options)}) {
+    const std::vector<double> got = outputs_over(compile_text(files.front().text, {.top = "B"}), rows);
+    EXPECT_EQ(got, wanted) << files.front().text;
+  }
+  for (const char* const dialect : {"portable", "codesys", "twincat"}) {
+    EXPECT_THAT(st_of(diagram, dialect), HasSubstr("  IF C_TR >= LARGEST THEN")) << dialect;
+  }
+}
+
 std::string body_of_expression(const std::string& expression, std::string_view dialect = "portable") {
   const std::string text =
       st_of(fmt::format("FUNCTION_BLOCK E (* @ts 1ms *) VAR_INPUT X, Z : LREAL; N, M : DINT; B, C, D : BOOL; END_VAR\n"
@@ -182,6 +219,18 @@ TEST(StText, WordsStayWords) {
   EXPECT_THAT(z("DINT_TO_WORD(N) OR W"),
               HasSubstr("  Z := DWORD_TO_WORD(DINT_TO_DWORD(N) AND DWORD#16#0000FFFF) OR W;\n"));
   EXPECT_THAT(z("W"), HasSubstr("  Q := (W AND V) = WORD#16#0027 AND ((W AND WORD#16#0008) = WORD#16#0000);\n"));
+}
+
+TEST(StText, BitsOfIntegersAreConvertedAtTheirEdgesAlone) {
+  const auto k = [](const std::string& expression) {
+    return st_of(
+        "FUNCTION_BLOCK C (* @ts 1ms @body *) VAR_INPUT D, E : DWORD; END_VAR VAR_OUTPUT K : DWORD; END_VAR K := " +
+        expression + "; END_FUNCTION_BLOCK");
+  };
+  EXPECT_THAT(
+      k("(D AND 16#FF) OR SHL(E, 8)"),
+      HasSubstr("  K := DWORD_TO_DINT((DINT_TO_DWORD(D) AND DWORD#16#000000FF) OR SHL(DINT_TO_DWORD(E), 8));\n"));
+  EXPECT_THAT(k("NOT (D XOR E)"), HasSubstr("  K := DWORD_TO_DINT(NOT (DINT_TO_DWORD(D) XOR DINT_TO_DWORD(E)));\n"));
 }
 
 TEST(StText, OneOperationOnAllElementsIsALoop) {

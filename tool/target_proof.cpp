@@ -22,6 +22,7 @@
 #include "codegen/import/plcopen_import.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "support/single.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 #include "tool/batch_program.hpp"
@@ -66,7 +67,7 @@ Drive random_drive(const Program& program, bool float32) {
     while (signal.size() < steps) {
       double value = random_value(port, random);
       if (float32 && port.type == Type::Real) {
-        value = static_cast<double>(static_cast<float>(value));
+        value = nearest_single(value);
       }
       signal.insert(signal.end(), std::min<std::size_t>(1 + random() % 8, steps - signal.size()), value);
     }

@@ -16,6 +16,7 @@
 #include "codegen/backends/shared/interval.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "codegen/trace/evaluate.hpp"
+#include "support/single.hpp"
 #include "tests/codegen/random_program.hpp"
 
 namespace hysteron::testing {
@@ -150,7 +151,7 @@ std::size_t hold(std::uint64_t seed) {
       double value = 0.0;
       switch (port.type) {
         case Type::Real:
-          value = static_cast<double>(static_cast<float>(std::uniform_real_distribution<double>(-1.5, 2.5)(random)));
+          value = nearest_single(std::uniform_real_distribution<double>(-1.5, 2.5)(random));
           value = random() % 8 == 0 ? (random() % 2 == 0 ? -1.5 : 2.5) : value;
           break;
         case Type::Int:

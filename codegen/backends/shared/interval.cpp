@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "codegen/trace/evaluate.hpp"
+#include "support/single.hpp"
 
 namespace hysteron::interval {
 namespace {
@@ -23,7 +24,7 @@ const ValueBounds any_dint{.low = lowest_dint, .high = highest_dint, .may_be_nan
 const ValueBounds any_truth{.low = 0.0, .high = 1.0, .may_be_nan = false};
 
 double rounded(double value, bool float32) {
-  return float32 ? static_cast<double>(static_cast<float>(value)) : value;
+  return float32 ? nearest_single(value) : value;
 }
 
 /// A library's result may be off by some units in the last place.

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "codegen/backends/shared/interval.hpp"
+#include "support/single.hpp"
 
 namespace hysteron {
 namespace {
@@ -62,9 +63,7 @@ class BoundsOfRoutine {
     return bounds;
   }
 
-  [[nodiscard]] double rounded(double value) const {
-    return float32_ ? static_cast<double>(static_cast<float>(value)) : value;
-  }
+  [[nodiscard]] double rounded(double value) const { return float32_ ? nearest_single(value) : value; }
 
   /// Where an end may rest: what the text names, and powers of 16, so that a decay finds an end that it does not leave.
   void find_landmarks() {

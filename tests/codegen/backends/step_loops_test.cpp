@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "codegen/backends/batch/batch.hpp"
 #include "codegen/backends/c/c.hpp"
 #include "codegen/backends/shared/value_shapes.hpp"
+#include "codegen/interpreter/machine.hpp"
 
 namespace hysteron::testing {
 namespace {
@@ -66,6 +68,62 @@ std::string matrix_gain_in_c(std::size_t rows, std::size_t columns) {
       "LREAL; "
       "END_VAR VAR K : HY_MATRIX_GAIN := (K := {}, ROWS := {}); END_VAR\nK(XIN := X); Y := K.XOUT; END_FUNCTION_BLOCK",
       columns - 1, rows - 1, numbers(rows * columns), rows)));
+}
+
+Program continuous(std::size_t poles, std::size_t zeros) {
+  return compile_text(
+      fmt::format("FUNCTION_BLOCK T (* @ts 1ms *) VAR_INPUT U : LREAL; R : BOOL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR "
+                  "VAR G : HY_TRANSFER_FUNCTION_S := (NUM := {}, DEN := {}); END_VAR\n"
+                  "G(XIN := U, R1 := R); Y := G.XOUT; END_FUNCTION_BLOCK",
+                  numbers(zeros + 1), numbers(poles + 1)));
+}
+
+/// Each integrator of the chain reads the one before, and each power of c the last.
+TEST(StepLoops, AChainIsALoop) {
+  for (const std::size_t zeros : {0, 3, 11}) {
+    const std::string twelve = step_in_c(continuous(12, zeros));
+    const std::string sixteen = step_in_c(continuous(16, zeros));
+    EXPECT_EQ(count_of(twelve, "\n"), count_of(sixteen, "\n")) << sixteen;
+    EXPECT_LT(count_of(sixteen, "\n"), 70U) << sixteen;
+  }
+  const std::string step = step_in_c(continuous(5, 0));
+  EXPECT_NE(step.find("  for (size_t i = 1U; i < 5U; ++i) {\n"
+                      "    g_product[i] = g_product[i - 1U] * g_product[0];\n"
+                      "  }\n"),
+            std::string::npos)
+      << step;
+}
+
+TEST(StepLoops, ADifferenceOfManyTermsIsALoop) {
+  const std::string text = generate_st(continuous(6, 0), {.dialect = *st_dialect("portable")}).front().text;
+  EXPECT_NE(text.find("  G_DIFFERENCE := U;\n"
+                      "  FOR TERM := 0 TO 5 DO\n"
+                      "    G_DIFFERENCE := G_DIFFERENCE - G_DEN[TERM + 1] * G_SUM[TERM];\n"
+                      "  END_FOR;\n"),
+            std::string::npos)
+      << text;
+}
+
+/// A chain in which something else stands between two of its values is none: it would be computed too early.
+TEST(StepLoops, AChainThatAnotherOneCrossesStaysLines) {
+  const Program program = compile_text(
+      "FUNCTION_BLOCK T (* @ts 1ms @body *) VAR_INPUT X : ARRAY[0..3] OF LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"
+      "VAR A, B : ARRAY[0..3] OF LREAL; I : DINT; END_VAR\n"
+      "A[0] := X[0]; B[0] := X[1];\n"
+      "FOR I := 1 TO 3 DO A[I] := X[I] * B[I - 1] + A[I - 1]; B[I] := A[I] * X[I]; END_FOR;\n"
+      "Y := A[3] + B[3] + A[2] * B[2] + A[1] * B[1];\nEND_FUNCTION_BLOCK");
+  Machine<double> machine(program);
+  const std::string text = generate_st(program, {.dialect = *st_dialect("portable")}).front().text;
+  Machine<double> again(compile_text(text, {.top = "T"}));
+  for (int k = 0; k < 20; ++k) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      machine.set_input(i, std::sin(1.0 + k * (0.3 + static_cast<double>(i))));
+      again.set_input(i, std::sin(1.0 + k * (0.3 + static_cast<double>(i))));
+    }
+    machine.step();
+    again.step();
+    EXPECT_EQ(machine.output(0), again.output(0)) << text;
+  }
 }
 
 /// Up to eight terms are one line, and two rows of them share a round of the loop.

@@ -165,19 +165,36 @@ std::vector<std::vector<ValueId>> chains_of(const std::vector<ValueId>& section,
   return chains;
 }
 
-/// y[i] = f(a[i], x[i]).
+/// Whether two values differ in places alone.
+bool are_alike(const Signs& a, const Signs& b) {
+  return std::ranges::equal(a, b, [](const Sign& x, const Sign& y) { return x.kind == y.kind && x.which == y.which; });
+}
+
+/// y[i] = f(a[i], x[i]), by rising places.
 std::vector<std::vector<ValueId>> rows_of(const std::vector<ValueId>& section, const SignReader& reader) {
-  std::vector<Family> found;
+  struct One {
+    ValueId id;
+    Signs signs;
+  };
+  std::vector<std::vector<One>> groups;
   for (const ValueId id : section) {
-    const Signs signs = reader.of(id);
-    if (std::ranges::none_of(found, [&](Family& one) { return one.take(id, signs); })) {
-      found.push_back({.values = {id}, .first = signs, .last = signs});
-    }
+    Signs signs = reader.of(id);
+    const auto group =
+        std::ranges::find_if(groups, [&](const std::vector<One>& one) { return are_alike(one.front().signs, signs); });
+    (group == groups.end() ? groups.emplace_back() : *group).push_back({id, std::move(signs)});
   }
   std::vector<std::vector<ValueId>> rows;
-  for (const Family& one : found) {
-    if (one.values.size() >= shortest_loop) {
-      rows.push_back(one.values);
+  for (std::vector<One>& group : groups) {
+    std::ranges::stable_sort(group, [](const One& a, const One& b) {
+      return std::ranges::lexicographical_compare(a.signs, b.signs, {}, &Sign::place, &Sign::place);
+    });
+    for (std::size_t i = 0; i < group.size();) {
+      Family run{.values = {group[i].id}, .first = group[i].signs, .last = group[i].signs};
+      for (++i; i < group.size() && run.take(group[i].id, group[i].signs); ++i) {
+      }
+      if (run.values.size() >= shortest_loop) {
+        rows.push_back(std::move(run.values));
+      }
     }
   }
   return rows;
@@ -214,6 +231,33 @@ std::vector<std::vector<ValueId>> values_by_section(const Graph& graph, const Ro
 }
 
 }  // namespace
+
+/// Factors of what a sum adds: where two sums read an element, each reads it where it is, and both may be loops.
+void StepWriter::find_elements_in_place() {
+  const Tape& tape = routine.tape;
+  std::vector<bool> is_added(tape.size(), false);
+  in_place_.assign(tape.size(), false);
+  for (ValueId id = 0; id < tape.size(); ++id) {
+    const Value& value = tape[id];
+    in_place_[id] = value.op == Op::At && tape[value.args[0]].op == Op::Parameter && is_literal(tape[value.args[1]].op);
+    if (routine.uses[id] > 0 && (value.op == Op::Add || value.op == Op::Subtract)) {
+      is_added[value.args[1]] = true;
+    }
+  }
+  for (ValueId id = 0; id < tape.size(); ++id) {
+    const bool is_term = tape[id].op == Op::Multiply && routine.uses[id] == 1 && is_added[id];
+    for (const ValueId arg : tape[id].args) {
+      if (arg != no_value && routine.uses[id] > 0 && !is_term) {
+        in_place_[arg] = false;
+      }
+    }
+  }
+  for (const Statement& one : routine.step) {
+    if (one.kind != Statement::Kind::Section && one.value != no_value) {
+      in_place_[one.value] = false;
+    }
+  }
+}
 
 /// Before any of them is written. Chains come first: a row may read their elements.
 void StepWriter::find_families() {

@@ -29,7 +29,7 @@ void StepWriter::prepare_loops() {
   if (!has_loops() || !has_places) {
     return;
   }
-  elements_in_place_ = true;
+  find_elements_in_place();
   find_shapes();
   find_families();
   find_arrays();

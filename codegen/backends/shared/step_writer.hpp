@@ -115,12 +115,8 @@ class StepWriter {
   [[nodiscard]] bool has_name(ValueId id) const {
     return !is_leaf(routine.tape[id].op) && (needs_name(id) || own_definition_[id] != no_value);
   }
-  /// An element of a parameter, beside loops: a loop over elements reads them where they are.
-  [[nodiscard]] bool is_written_in_place(ValueId id) const {
-    const Value& value = routine.tape[id];
-    return elements_in_place_ && value.op == Op::At && routine.tape[value.args[0]].op == Op::Parameter &&
-           is_literal(routine.tape[value.args[1]].op);
-  }
+  [[nodiscard]] bool is_written_in_place(ValueId id) const { return id < in_place_.size() && in_place_[id]; }
+  void find_elements_in_place();
 
   // --- loops ---
 
@@ -231,7 +227,7 @@ class StepWriter {
   bool in_reset_ = false;
 
   bool loops_are_prepared_ = false;
-  bool elements_in_place_ = false;
+  std::vector<bool> in_place_;  ///< by value: an element of a parameter that a loop reads where it is
   std::optional<LoopWords> loops_;
   ValueShapes shapes_;
   static constexpr std::uint32_t no_array = no_value;

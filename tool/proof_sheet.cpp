@@ -76,7 +76,7 @@ const std::string& hash_of_generator() {
 }
 
 Json stack_json(const TargetProof& proof) {
-  return proof.stack_bytes ? Json{{"bytes", *proof.stack_bytes}, {"measured", proof.way + " at -O1"}} : Json();
+  return proof.stack_bytes ? Json{{"bytes", *proof.stack_bytes}, {"measured", proof.way + " at -O2"}} : Json();
 }
 
 std::string command_of(const Target& target, const TargetOptions& options, const DiagramOptions& diagram) {

@@ -241,7 +241,7 @@ std::vector<Signal> run_in_c(const Program& program, const std::vector<Generated
   }
   write_scratch(folder.path() / "main_of_proof.c", main);
   auto command = *compiler;
-  command.insert(command.end(), {"-std=c99", "-O1", "-I" + folder.path().string()});
+  command.insert(command.end(), {"-std=c99", "-O2", "-I" + folder.path().string()});  // as an FMU has it
   for (const std::string& flag : words_of(cpp_numeric_flags)) {
     command.push_back(flag);
   }

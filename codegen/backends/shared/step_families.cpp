@@ -151,7 +151,7 @@ std::vector<std::vector<ValueId>> chains_of(const std::vector<ValueId>& section,
   std::unordered_set<ValueId> taken;
   std::vector<std::vector<ValueId>> chains;
   for (const Family& one : found) {
-    if (one.values.size() < shortest_loop) {
+    if (one.values.size() < shortest_family) {
       continue;
     }
     chains.push_back(one.values);
@@ -192,7 +192,7 @@ std::vector<std::vector<ValueId>> rows_of(const std::vector<ValueId>& section, c
       Family run{.values = {group[i].id}, .first = group[i].signs, .last = group[i].signs};
       for (++i; i < group.size() && run.take(group[i].id, group[i].signs); ++i) {
       }
-      if (run.values.size() >= shortest_loop) {
+      if (run.values.size() >= shortest_family) {
         rows.push_back(std::move(run.values));
       }
     }

@@ -15,6 +15,8 @@ namespace hysteron {
 
 /// Rows of at least this many elements, and sums of at least this many terms, are loops (decision 46).
 inline constexpr std::size_t shortest_loop = 3;
+/// Values of a block that are alike, or a chain behind its first value, are a loop from this many on.
+inline constexpr std::size_t shortest_family = 4;
 /// The same of the terms of a sum, where a target computes several rows at once (decision 48).
 inline constexpr std::size_t shortest_sum_at_once = 9;
 

@@ -1,8 +1,11 @@
 #include "diagnosis/diagnose.hpp"
 
 #include <chrono>
+#include <filesystem>
 #include <utility>
 
+#include "codegen/graph/fmu_block.hpp"
+#include "codegen/graph/fmu_files.hpp"
 #include "diagnosis/model/budget.hpp"
 #include "diagnosis/policy.hpp"
 #include "diagnosis/rules.hpp"
@@ -15,6 +18,16 @@
 
 namespace hysteron::diagnosis {
 namespace {
+
+/// With the files of FMUs named from the root: the texts of candidates have no folder of their own.
+DiagnosisInput with_whole_paths(const DiagnosisInput& input) {
+  DiagnosisInput result = input;
+  const language::SourceFile& source = *input.program.graph.source;
+  result.text = with_fmu_files(
+      source, [&](std::string_view file) { return std::filesystem::absolute(fmu_path(source, file)).string(); });
+  result.program = compile_text(result.text, {.top = input.program.graph.name, .any_order = true, .path = source.path});
+  return result;
+}
 
 /// Each stage is one function from a value that no later one changes to the next.
 Diagnosis diagnosed(const DiagnosisInput& input, const DiagnosisOptions& options, Rules& rules) {
@@ -38,7 +51,7 @@ Diagnosis diagnosed(const DiagnosisInput& input, const DiagnosisOptions& options
 Diagnosis diagnose(const DiagnosisInput& input, const DiagnosisOptions& options) {
   const auto begun = std::chrono::steady_clock::now();
   Rules rules(options.without);
-  Diagnosis result = diagnosed(input, options, rules);
+  Diagnosis result = diagnosed(has_fmu(input.program.graph) ? with_whole_paths(input) : input, options, rules);
   if (options.explain) {
     result.decisions = rules.decisions();
   }

@@ -215,6 +215,7 @@ Action add_diagnose(CLI::App& app) {
                  "How many threads work; all cores without it. The verdict is the same with any number.")
       ->check(CLI::Range(1, 1024))
       ->option_text("N");
+  add_fmu_options(app);
   app.add_flag("--any-order", options->diagram.any_order, "The order of the statements means nothing.");
   app.add_flag("--json", options->json, "Prints verdict.json.");
   app.footer(std::string(diagnose_examples));

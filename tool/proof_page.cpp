@@ -84,6 +84,29 @@ std::string schedule_html(const Json& schedule) {
   return html + "</table>\n";
 }
 
+/// A bound as it is read by a person.
+std::string range_html(const Json& one) {
+  const auto end = [](const Json& value, std::string_view open) {
+    return value.is_null() ? std::string(open) : fmt::format("{:.6g}", value.get<double>());
+  };
+  const std::string unit = one["unit"].get<std::string>();
+  const std::string range = one["low"].is_null() && one["high"].is_null()
+                                ? std::string("no bound")
+                                : fmt::format("{} … {}{}", end(one["low"], "−∞"), end(one["high"], "∞"),
+                                              unit.empty() ? "" : " " + escaped(unit));
+  return range + (one["always_finite"].get<bool>() ? "" : "; not proved finite");
+}
+
+std::string bounds_html(const Json& bounds) {
+  std::vector<Fact> rows;
+  for (const Json& one : bounds) {
+    rows.emplace_back(value_html(one["output"]), range_html(one));
+  }
+  return "<p>Proved by interval arithmetic, for every input within its stated range, in every step, with these "
+         "parameters. An input without a range is any number.</p>\n" +
+         facts(rows);
+}
+
 std::string files_html(const Json& files) {
   std::vector<Fact> rows;
   for (const Json& one : files) {
@@ -107,7 +130,8 @@ std::string proof_page(const Json& sheet) {
                          {"parameters", file_html(sheet["parameters"])},
                          {"hash of diagram and parameters", hash_html(sheet["hash_of_diagram_and_parameters"])},
                          {"language", value_html(sheet["language"])},
-                         {"generator", value_html(sheet["generator"])},
+                         {"generator", fmt::format("{}<br/>{}", value_html(sheet["generator"]),
+                                                   hash_html(sheet["generator_sha256"]))},
                          {"sample time", fmt::format("{} ms", sheet["sample_time_ns"].get<double>() / 1e6)}}));
   body += section(
       "What a step costs",
@@ -121,12 +145,14 @@ std::string proof_page(const Json& sheet) {
               fmt::format("{} in the longest step, with all rates in it; {} of them call a function",
                           value_html(sheet["operations_per_step"]), value_html(sheet["function_calls_per_step"]))},
              {"paths", "one: both values of a choice may be computed, and loops have constant bounds"}}));
+  body += section("Bounds of the outputs", bounds_html(sheet["bounds"]));
   body += section("Files", files_html(sheet["files"]));
   body += section("Schedule", schedule_html(sheet["schedule"]), " class=\"long\"");
   body += section("Repeat it",
                   fmt::format("<p>This command makes the files and this sheet again, from the same source:</p>\n"
                               "<pre>{}</pre>\n<p>What is not proved here: that the compiler of the target "
-                              "rounds as this machine does, and that values stay within bounds.</p>\n",
+                              "rounds as this machine does, and that no value on the way to an output is "
+                              "infinite.</p>\n",
                               value_html(sheet["command"])));
   body +=
       "<section><h2>Signed</h2>\n<div "

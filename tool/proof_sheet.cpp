@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "codegen/backends/shared/identifiers.hpp"
 #include "codegen/backends/shared/layout.hpp"
 #include "codegen/backends/shared/routine.hpp"
+#include "codegen/backends/shared/value_bounds.hpp"
 #include "codegen/program_hash.hpp"
 #include "support/names.hpp"
 #include "support/sha256.hpp"
@@ -52,8 +54,29 @@ std::size_t parameter_bytes(const Graph& graph, bool float32) {
   return state_bytes(parameters, float32);
 }
 
+/// Within which bounds each output stays; an open end is null.
+Json bounds_json(const Graph& graph, const Routine& routine, bool float32) {
+  const auto end = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
+  const std::vector<ValueBounds> bounds = output_bounds(graph, routine, float32);
+  Json list = Json::array();
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    list.push_back({{"output", graph.outputs[i].name},
+                    {"unit", graph.outputs[i].unit},
+                    {"low", end(bounds[i].low)},
+                    {"high", end(bounds[i].high)},
+                    {"always_finite", bounds[i].is_finite()}});
+  }
+  return list;
+}
+
+/// The bytes of this program, which the version alone does not tell.
+const std::string& hash_of_generator() {
+  static const std::string hash = sha256(read_text_file("/proc/self/exe"));
+  return hash;
+}
+
 Json stack_json(const TargetProof& proof) {
-  return proof.stack_bytes ? Json{{"bytes", *proof.stack_bytes}, {"measured", proof.way + " at -O1"}} : Json();
+  return proof.stack_bytes ? Json{{"bytes", *proof.stack_bytes}, {"measured", proof.way + " at -O2"}} : Json();
 }
 
 std::string command_of(const Target& target, const TargetOptions& options, const DiagramOptions& diagram) {
@@ -102,6 +125,7 @@ ProofSheet proof_sheet(const Program& program, const Target& target, const std::
                   {"target", target.name},
                   {"language", target.language},
                   {"generator", fmt::format("Hysteron {}", version)},
+                  {"generator_sha256", hash_of_generator()},
                   {"source", hash_of_file(diagram.file)},
                   {"parameters", hash_of_file(diagram.parameters)},
                   {"hash_of_diagram_and_parameters", program_hash(program)},
@@ -114,6 +138,7 @@ ProofSheet proof_sheet(const Program& program, const Target& target, const std::
                   {"operations_per_step", routine.operations},
                   {"function_calls_per_step", routine.function_calls},
                   {"schedule", schedule_of(program)},
+                  {"bounds", bounds_json(graph, routine, options.float32)},
                   {"equality",
                    {{"run", sheet.proof.way},
                     {"against", "the interpreter, over random inputs of a fixed seed"},

@@ -22,6 +22,7 @@
 #include "codegen/import/plcopen_import.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "support/single.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 #include "tool/batch_program.hpp"
@@ -66,7 +67,7 @@ Drive random_drive(const Program& program, bool float32) {
     while (signal.size() < steps) {
       double value = random_value(port, random);
       if (float32 && port.type == Type::Real) {
-        value = static_cast<double>(static_cast<float>(value));
+        value = nearest_single(value);
       }
       signal.insert(signal.end(), std::min<std::size_t>(1 + random() % 8, steps - signal.size()), value);
     }
@@ -240,7 +241,7 @@ std::vector<Signal> run_in_c(const Program& program, const std::vector<Generated
   }
   write_scratch(folder.path() / "main_of_proof.c", main);
   auto command = *compiler;
-  command.insert(command.end(), {"-std=c99", "-O1", "-I" + folder.path().string()});
+  command.insert(command.end(), {"-std=c99", "-O2", "-I" + folder.path().string()});  // as an FMU has it
   for (const std::string& flag : words_of(cpp_numeric_flags)) {
     command.push_back(flag);
   }

@@ -23,6 +23,7 @@
 
 #include "blocks/filtered_rate.hpp"
 #include "blocks/scalar.hpp"
+#include "support/single.hpp"
 
 namespace hysteron {
 
@@ -169,7 +170,7 @@ class alignas(8 * W) Dual {
   friend Dual max(const Dual& a, const Dual& b) { return b.value() > a.value() ? b : a; }
 
   /// To the nearest REAL: a step function of tiny steps, whose derivative is that of the line through them.
-  friend Dual single(const Dual& x) { return chain(static_cast<double>(static_cast<float>(x.value())), 1.0, x); }
+  friend Dual single(const Dual& x) { return chain(nearest_single(x.value()), 1.0, x); }
   friend std::int32_t to_int(const Dual& x) { return to_int(x.value()); }
   friend bool vanishes(const Dual& x) { return x.value() == 0.0 && x.is_constant(); }
   friend double value_of(const Dual& x) { return x.value(); }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "codegen/graph/fmu_files.hpp"
 #include "codegen/parameters/apply.hpp"
 
 namespace hysteron::detail {
@@ -32,8 +33,7 @@ void spread(const Graph& graph, std::vector<bool>& reached) {
 Reach::Reach(const OutputErrorProblem& problem)
     : parameters_(problem.parameters.size()), nodes_(problem.program.graph.nodes.size()) {
   const Graph& graph = problem.program.graph;
-  has_fmu_ = std::ranges::any_of(graph.nodes,
-                                 [](const Node& node) { return node.block != nullptr && node.block->fmu != nullptr; });
+  has_fmu_ = hysteron::has_fmu(graph);
   for (const FreeParameter& free : problem.parameters) {
     std::vector<bool>& reached = reached_.emplace_back(nodes_);
     for (std::size_t n = 0; n < nodes_; ++n) {
@@ -70,7 +70,7 @@ bool Reach::leaves(Index column, const std::vector<bool>& nodes) const {
 }
 
 std::vector<bool> Reach::unreached(const std::vector<Index>& columns) const {
-  std::vector<bool> still(nodes_, !has_fmu_);
+  std::vector<bool> still(nodes_, true);
   for (const Index column : columns) {
     const std::vector<bool>& reached = of(column);
     for (std::size_t n = 0; n < nodes_; ++n) {

@@ -22,7 +22,7 @@ class Reach {
 
   /// Whether an unknown reaches none of these nodes.
   [[nodiscard]] bool leaves(Eigen::Index column, const std::vector<bool>& nodes) const;
-  /// The nodes that none of these columns reaches. None at all where an FMU is among the nodes: it keeps its own time.
+  /// The nodes that none of these columns reaches.
   [[nodiscard]] std::vector<bool> unreached(const std::vector<Eigen::Index>& columns) const;
   [[nodiscard]] bool has_fmu() const { return has_fmu_; }
 

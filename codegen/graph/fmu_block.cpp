@@ -179,6 +179,26 @@ std::string fmu_path(const language::SourceFile& source, std::string_view file) 
   return (std::filesystem::path(source.path).parent_path() / file).string();
 }
 
+std::string with_fmu_files(const language::SourceFile& source,
+                           const std::function<std::string(std::string_view file)>& moved) {
+  std::string text = *source.text;
+  for (auto block = source.blocks.rbegin(); block != source.blocks.rend(); ++block) {
+    for (auto variable = block->variables.rbegin(); variable != block->variables.rend(); ++variable) {
+      for (const language::Annotation& annotation : variable->annotations) {
+        if (annotation.key == "file") {
+          text.replace(annotation.value_span.offset, annotation.value_span.length, moved(annotation.value));
+        }
+      }
+    }
+  }
+  return text;
+}
+
+bool has_fmu(const Graph& graph) {
+  return std::ranges::any_of(graph.nodes,
+                             [](const Node& node) { return node.block != nullptr && node.block->fmu != nullptr; });
+}
+
 void check_fmu_parameters(const Graph& graph, Diagnostics& diagnostics) {
   for (const Node& node : graph.nodes) {
     if (node.block == nullptr || node.block->fmu == nullptr) {

@@ -13,6 +13,7 @@
 
 #include "codegen/graph/lowering.hpp"
 #include "support/errors.hpp"
+#include "support/single.hpp"
 
 namespace hysteron {
 namespace {
@@ -207,8 +208,7 @@ class Check {
   void check_exponent(ExpressionId exponent) {
     double value = 0.0;
     Type type = Type::Real;
-    if (constant_value(source_, exponent, value, type) && type == Type::Real &&
-        static_cast<double>(static_cast<float>(value)) != value) {
+    if (constant_value(source_, exponent, value, type) && type == Type::Real && nearest_single(value) != value) {
       warn(Difference::Exponent, exponent, fmt::format("the exponent {} has no type", text_of(exponent)),
            fmt::format("Name it: VAR CONSTANT EXPONENT : LREAL := {}; END_VAR.", text_of(exponent)));
     }

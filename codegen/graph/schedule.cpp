@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 
+#include "codegen/graph/loop_cutter.hpp"
 #include "codegen/graph/outermost.hpp"
 #include "support/errors.hpp"
 
@@ -279,8 +280,8 @@ class Scheduler {
         path += path.empty() ? "" : " → ";
         path += from.owner();
         cuts.push_back({places_.empty() ? OuterPlace{0, graph_.wire_spans[place]} : places_[place],
-                        fmt::format("wire {} → {}: a HY_DELAY here would cut the loop", output_name(from, wire.port),
-                                    input_name(node, pin))});
+                        fmt::format("wire {} → {}: a {} here would cut the loop", output_name(from, wire.port),
+                                    input_name(node, pin), loop_cutter)});
       });
     }
     if (!cuts.empty()) {
@@ -300,7 +301,8 @@ class Scheduler {
     diagnostics_.error(
         error::algebraic_loop, graph_.place(cuts.empty() ? language::Span{} : cuts.front().place.span),
         fmt::format("algebraic loop: {}", path),
-        "Every value in this circle needs the others in the same step. Put a HY_DELAY into one of its wires.",
+        fmt::format("Every value in this circle needs the others in the same step. Put a {} into one of its wires.",
+                    loop_cutter),
         std::move(notes));
   }
 

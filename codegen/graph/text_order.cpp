@@ -13,6 +13,7 @@
 #include "blocks/delay_bool.hpp"
 #include "blocks/delay_dint.hpp"
 #include "blocks/delay_word.hpp"
+#include "codegen/graph/loop_cutter.hpp"
 #include "codegen/graph/names.hpp"
 #include "codegen/graph/schedule.hpp"
 #include "support/errors.hpp"
@@ -226,8 +227,10 @@ class Order {
       diagnostics.warning(
           error::read_after_call, source_.place(read.span),
           fmt::format("{} is known without this step's inputs, and is read before its call", read.text),
-          "Here it is this step's value; an IEC compiler would give that of last cycle. Move the reading statement "
-          "behind the call; in a loop, put the HY_DELAY that is inside into this block.",
+          fmt::format(
+              "Here it is this step's value; an IEC compiler would give that of last cycle. Move the reading statement "
+              "behind the call; in a loop, put the {} that is inside into this block.",
+              loop_cutter),
           notes);
     }
   }

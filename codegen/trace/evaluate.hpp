@@ -6,6 +6,7 @@
 
 #include "blocks/scalar.hpp"
 #include "codegen/trace/operation.hpp"
+#include "support/single.hpp"
 
 namespace hysteron {
 
@@ -52,7 +53,7 @@ inline std::int32_t int_operation(Op op, std::int32_t a, std::int32_t b) {
 /// The nearest number that an IEC REAL holds.
 template <MachineReal S>
 S single(S x) {
-  return static_cast<S>(static_cast<float>(x));
+  return static_cast<S>(nearest_single(static_cast<double>(x)));
 }
 /// The lower 16 bits, and back.
 inline std::uint16_t int_to_word(std::int32_t x) {

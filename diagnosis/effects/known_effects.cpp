@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "codegen/graph/definition.hpp"
-#include "codegen/graph/fmu_block.hpp"
 #include "diagnosis/effects/effects.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
@@ -18,8 +17,6 @@
 namespace hysteron::diagnosis {
 
 void refuse_undiagnosable(const std::vector<std::string>& wanted, const Program& program) {
-  refuse_fmu(program.graph, "a diagnosis tries effects within a plant, and an FMU shows nothing of its inside",
-             "fit its parameters with `hysteron tune`; or write the plant as a diagram, and diagnose that.");
   std::vector<std::string> known{"glitches"};
   std::ranges::copy(std::views::keys(families_by_effect(program)), std::back_inserter(known));
   std::ranges::sort(known);

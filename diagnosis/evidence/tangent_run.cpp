@@ -34,7 +34,7 @@ std::vector<std::string> TangentRun::states_of(const Graph& graph, bool& complet
     if (node.block == nullptr) {
       continue;
     }
-    complete = complete && node.rate == Rate{};
+    complete = complete && node.rate == Rate{} && node.block->fmu == nullptr;  // an FMU hides its states
     for (const Field& field : node.block->states) {
       complete = complete && field.length == 1;
       if (field.type == Type::Real && field.length == 1) {

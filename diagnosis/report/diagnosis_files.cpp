@@ -6,6 +6,7 @@
 #include <array>
 
 #include "codegen/compile.hpp"
+#include "codegen/graph/fmu_files.hpp"
 #include "diagnosis/report/page.hpp"
 #include "diagnosis/report/verdict_json.hpp"
 #include "records/csv.hpp"
@@ -44,6 +45,17 @@ constexpr std::string_view improved_parameters_file = "improved.toml";
 constexpr std::string_view feedforward_file = "feedforward.st";
 constexpr std::string_view next_experiment_file = "next_experiment.csv";
 
+/// The improved diagram with the files of its FMUs seen from the folder that it is written to.
+std::string improved_text(const std::filesystem::path& folder, const Diagnosis& found) {
+  Diagnostics unused;  // the text compiles
+  const auto source = language::parse("improved.st", found.improved_text, unused);
+  return with_fmu_files(source, [&](std::string_view file) {
+    return std::filesystem::path(file)
+        .lexically_relative(std::filesystem::absolute(folder).lexically_normal())
+        .string();
+  });
+}
+
 Program improved_program(const Diagnosis& found) {
   return compile_text(found.improved_text, {.top = found.top, .any_order = true});
 }
@@ -76,7 +88,7 @@ std::vector<OutputFile> diagnosis_files(const std::filesystem::path& folder, con
     files.push_back({.path = folder / report_file, .contents = report_page(found, {})});
     return files;
   }
-  files.push_back({.path = folder / improved_diagram_file, .contents = found.improved_text});
+  files.push_back({.path = folder / improved_diagram_file, .contents = improved_text(folder, found)});
   files.push_back(
       {.path = folder / improved_parameters_file,
        .contents = parameters::parameter_text(found.improved_file, {}, "From hysteron diagnose.\n" + found.summary)});

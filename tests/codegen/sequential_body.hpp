@@ -11,6 +11,7 @@
 
 #include "codegen/language/body.hpp"
 #include "codegen/language/syntax.hpp"
+#include "support/single.hpp"
 
 namespace hysteron::testing {
 
@@ -251,7 +252,7 @@ class SequentialBody {
     Number result = type;
     result.value = given.value;
     if (type.kind == 'f') {
-      result.value = static_cast<double>(static_cast<float>(given.value));
+      result.value = nearest_single(given.value);
     } else if (type.kind == 'i' || type.kind == 'u') {
       const auto whole = static_cast<std::uint64_t>(static_cast<std::int64_t>(given.value));
       const auto mask = (std::uint64_t{1} << static_cast<unsigned>(type.bits)) - 1;
@@ -347,7 +348,7 @@ class SequentialBody {
         default:
           x = a.value / b.value;
       }
-      return single ? Number{'f', 32, static_cast<double>(static_cast<float>(x))} : Number{'d', 64, x};
+      return single ? Number{'f', 32, nearest_single(x)} : Number{'d', 64, x};
     }
     // C: 32 bits, without a sign where one side is so wide and has none.
     const bool without_sign = is_unsigned_32(a) || is_unsigned_32(b);

@@ -256,6 +256,12 @@ class Schemas(unittest.TestCase):
                    self.printed("diagnose", "plant.st", "--log", "still.csv", "--params", "p.toml", "--out", "still", "--json",
                                 codes=(1,)))
 
+    def test_proof(self):
+        (self.folder / "values.toml").write_text("[parameters.AMP]\nK = 3.0\n", encoding="utf-8")
+        self.printed("generate", "plant.st", "--target", "c", "--params", "values.toml", "--proof", "--out", "proved")
+        self.printed("generate", "machine.st", "--target", "st", "--proof", "--out", "proved")
+        self.holds("proof", *(file.read_text(encoding="utf-8") for file in (self.folder / "proved").glob("*.proof.json")))
+
     def test_mqtt(self):
         broker = shutil.which("mosquitto", path=os.environ["PATH"] + ":/usr/sbin")
         listener = shutil.which("mosquitto_sub")

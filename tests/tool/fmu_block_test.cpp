@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tests/tool/motor_bench.hpp"
@@ -300,10 +302,6 @@ TEST(FmuBlock, NoTargetAndNoServedTaskHasIt) {
   bench.write("loop.run.toml", "");
   EXPECT_THAT(bench.shell("hysteron serve loop.st --config loop.run.toml --engine interpreter").err,
               HasSubstr("HY754"));
-  bench.write("p.toml", "[parameters]\nGAIN = 4.0\n");
-  bench.write("y.csv", "t,u,y\n0.000,1.0,0.0\n0.001,1.0,0.1\n0.002,0.25,0.2\n0.003,0.5,0.3\n");
-  EXPECT_THAT(bench.shell("hysteron diagnose loop.st --log y.csv --params p.toml --out diagnosis").err,
-              HasSubstr("HY754"));
   EXPECT_FALSE(bench.has("code"));
 }
 
@@ -355,6 +353,53 @@ TEST(FmuBlock, TuneFindsItsParametersAndSaysWhatItCost) {
   const std::string file = bench.read("tuned.toml");
   EXPECT_NEAR(std::stod(file.substr(file.find("GAIN = ") + 7)), 2.5, 1e-9);
   EXPECT_THAT(tuned.out, AllOf(HasSubstr("differences between instances"), HasSubstr("steps")));
+}
+
+/// A machine whose model is an FMU, with a play behind it that the model does not have.
+TEST(FmuBlock, ADiagnosisNamesTheEffectAtItsOutput) {
+  const Workbench bench;
+  bench.write("plant.st", test::plant);
+  ASSERT_EQ(bench.shell("hysteron generate plant.st --target fmu --out models").code, 0);
+  const std::string head =
+      "FUNCTION_BLOCK MACHINE  (* @ts 1ms *)\n  VAR_INPUT U : LREAL; (* @unit V *) GAIN : LREAL := 1.0; (* @param *) "
+      "END_VAR\n  VAR_OUTPUT Y : LREAL; END_VAR\n  VAR PLANT : HY_FMU;  (* @file models/plant.fmu *)";
+  bench.write("model.st",
+              head + " END_VAR\n  Y := GAIN * PLANT.Y;\n  PLANT(X := U, RESET := FALSE);\nEND_FUNCTION_BLOCK\n");
+  bench.write("truth.st", head +
+                              " B : HY_BACKLASH := (WIDTH := 0.02); END_VAR\n  B(XIN := GAIN * PLANT.Y);\n  Y := "
+                              "B.XOUT;\n  PLANT(X := U, RESET := FALSE);\nEND_FUNCTION_BLOCK\n");
+  std::string rows = "t,U\n";
+  for (int k = 0; k < 1500; ++k) {
+    rows += fmt::format("{:.3f},{:.6f}\n", 0.001 * k, std::sin(0.02 * k) + 0.5 * std::sin(0.0071 * k));
+  }
+  bench.write("in.csv", rows);
+  ASSERT_EQ(bench.shell("hysteron run truth.st --in in.csv --out out.csv").code, 0);
+  std::istringstream inputs(rows);
+  std::istringstream outputs(bench.read("out.csv"));
+  std::string in;
+  std::string out;
+  std::getline(inputs, in);
+  std::getline(outputs, out);
+  std::string measured = "t,U,Y\n";
+  std::uint32_t noise = 1;
+  while (std::getline(inputs, in) && std::getline(outputs, out)) {
+    noise = noise * 1664525U + 1013904223U;
+    measured +=
+        fmt::format("{},{:.7f}\n", in, std::stod(out.substr(out.find(',') + 1)) + 2e-4 * (noise / 4294967296.0 - 0.5));
+  }
+  bench.write("log.csv", measured);
+  bench.write("p.toml", "[parameters]\nGAIN = 1.0\n\n[fit]\nGAIN = {}\n");
+  const auto found = bench.shell(
+      "hysteron diagnose model.st --log log.csv --params p.toml --out diagnosis --effects backlash,creep,saturation "
+      "--effort 0.2 --json");
+  ASSERT_EQ(found.code, 0) << found.err;
+  const auto verdict = nlohmann::json::parse(found.out);
+  ASSERT_FALSE(verdict["effects"].empty()) << found.out;
+  EXPECT_EQ(verdict["effects"][0]["id"], "backlash");
+  EXPECT_THAT(bench.read("diagnosis/improved.st"), HasSubstr("(* @file ../models/plant.fmu *)"));
+  const auto improved =
+      bench.shell("cd diagnosis && hysteron run improved.st --in ../in.csv --params improved.toml --out again.csv");
+  EXPECT_EQ(improved.code, 0) << improved.err;
 }
 
 }  // namespace

@@ -185,9 +185,12 @@ HYSTERON_INLINE Int to_int(const Real& x) {
 HYSTERON_INLINE Real to_real(const Int& x) {
   return each([&](int i) { return static_cast<double>(static_cast<std::int32_t>(x[i])); });
 }
-// The nearest number of 32 bits.
+// The nearest number of 32 bits. Through memory, since GCC 12 leaves two of them side by side unrounded.
 HYSTERON_INLINE Real single(const Real& x) {
-  return each([&](int i) { return static_cast<double>(static_cast<float>(x[i])); });
+  return each([&](int i) {
+    volatile float nearest = static_cast<float>(x[i]);
+    return static_cast<double>(nearest);
+  });
 }
 
 HYSTERON_INLINE void set(HYSTERON_MEMORY(Real)& memory, const Real& value) { value.store(memory); }

@@ -11,6 +11,7 @@
 #include "codegen/backends/shared/port_groups.hpp"
 #include "codegen/graph/units.hpp"
 #include "support/element_name.hpp"
+#include "support/single.hpp"
 
 namespace hysteron {
 namespace {
@@ -27,10 +28,6 @@ FmuVariable of_port(const Port& port, FmuVariable::Role role, std::string_view g
           .minimum = port.minimum,
           .maximum = port.maximum,
           .member = fmt::format("{}.{}", group, member)};
-}
-
-double as_float(double value) {
-  return static_cast<double>(static_cast<float>(value));
 }
 
 }  // namespace
@@ -87,9 +84,9 @@ std::vector<FmuVariable> fmu_variables(const Program& program, const FmuOptions&
   }
   for (FmuVariable& one : list) {
     if (options.float32 && one.type == Type::Real) {
-      std::ranges::transform(one.start, one.start.begin(), as_float);
-      one.minimum = as_float(one.minimum);
-      one.maximum = as_float(one.maximum);
+      std::ranges::transform(one.start, one.start.begin(), nearest_single);
+      one.minimum = nearest_single(one.minimum);
+      one.maximum = nearest_single(one.maximum);
     }
   }
   return list;

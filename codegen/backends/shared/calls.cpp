@@ -6,6 +6,7 @@
 #include <bit>
 #include <numeric>
 
+#include "codegen/graph/loop_cutter.hpp"
 #include "codegen/graph/text_order.hpp"
 #include "support/errors.hpp"
 
@@ -219,7 +220,7 @@ class CallBuilder {
                       fmt::format("an input of {} waits for an output of the same block in the same step, so no single "
                                   "call computes both",
                                   graph_.nodes[named].owner()),
-                      "Leave out --structured, or put a HY_DELAY into the wire between them.");
+                      fmt::format("Leave out --structured, or put a {} into the wire between them.", loop_cutter));
     throw InputError(std::move(diagnostics));
   }
 

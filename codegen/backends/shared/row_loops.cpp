@@ -27,23 +27,25 @@ std::string_view without_brackets(std::string_view text) {
 
 }  // namespace
 
-std::vector<std::string> StepWriter::terms_of(ValueId sum) const {
-  std::vector<std::string> texts;
-  for (const ValueId term : shapes_.terms(routine, sum)) {
-    expressions.print_added(term, texts.emplace_back());
+std::vector<StepWriter::TermText> StepWriter::terms_of(ValueId sum) const {
+  std::vector<TermText> texts;
+  for (const ValueShapes::Term& term : shapes_.terms(routine, sum)) {
+    expressions.print_added(term.value, texts.emplace_back(TermText{.text = {}, .minus = term.minus}).text);
   }
   return texts;
 }
 
-std::vector<StepWriter::TermRun> StepWriter::runs_of(const std::vector<std::string>& terms, std::size_t shortest) {
+std::vector<StepWriter::TermRun> StepWriter::runs_of(const std::vector<TermText>& terms, std::size_t shortest) {
   std::vector<TermRun> runs;
   for (std::size_t i = 0; i < terms.size();) {
-    TermRun run{.pattern = PlacePattern(terms[i]), .first = i};
-    while (i + run.count < terms.size() && run.pattern.takes(terms[i + run.count], 0, run.count)) {
+    const TermRun single{.pattern = PlacePattern(terms[i].text), .first = i, .minus = terms[i].minus};
+    TermRun run = single;
+    while (i + run.count < terms.size() && terms[i + run.count].minus == run.minus &&
+           run.pattern.takes(terms[i + run.count].text, 0, run.count)) {
       ++run.count;
     }
     if (run.count < shortest) {
-      run = {.pattern = PlacePattern(terms[i]), .first = i};
+      run = single;
     }
     i += run.count;
     runs.push_back(std::move(run));
@@ -58,7 +60,8 @@ StepWriter::RowLoop StepWriter::loop_from(std::span<const RowText> rows) const {
     return row.terms.size() == rows.front().terms.size() && loop.line.takes(row.line, at, 0) &&
            std::ranges::all_of(loop.terms, [&](TermRun& run) {
              for (std::size_t i = 0; i < run.count; ++i) {
-               if (!run.pattern.takes(row.terms[run.first + i], at, i)) {
+               const TermText& term = row.terms[run.first + i];
+               if (term.minus != run.minus || !run.pattern.takes(term.text, at, i)) {
                  return false;
                }
              }
@@ -79,7 +82,7 @@ std::size_t StepWriter::rows_at_once(const RowLoop& loop) const {
 }
 
 void StepWriter::write_loop(const RowLoop& loop, std::span<const Row> rows, std::string& text) {
-  const std::size_t width = rows_at_once(loop);
+  const std::size_t width = rows.front().reads_last ? 1 : rows_at_once(loop);
   const std::size_t whole = rows.size() - rows.size() % width;
   std::size_t done = 0;
   if (whole > width) {
@@ -169,13 +172,13 @@ void StepWriter::write_sums(std::span<const Sum> sums, std::string_view row, std
     }
     for (std::size_t s = 0; s < sums.size(); ++s) {
       if (runs[i].count > 1) {
-        append(text, indentation, "  ", variables[s], loops_->assign, variables[s], " + ",
+        append(text, indentation, "  ", variables[s], loops_->assign, variables[s], runs[i].sign(),
                sums[s].runs[i].pattern.text(each), ";\n");
       } else if (i > 0) {
         if (open[s].empty()) {
           append(open[s], variables[s], loops_->assign, variables[s]);
         }
-        append(open[s], " + ", sums[s].runs[i].pattern.text(first));
+        append(open[s], runs[i].sign(), sums[s].runs[i].pattern.text(first));
       }
     }
     if (runs[i].count > 1) {

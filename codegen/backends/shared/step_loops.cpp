@@ -23,20 +23,33 @@ void StepWriter::prepare_loops() {
   loops_are_prepared_ = true;
   held_back_.assign(routine.tape.size(), false);
   array_of_.assign(routine.step.size(), no_array);
+  family_of_.assign(routine.tape.size(), no_array);
   const bool has_places = has_arrays(graph.inputs) || has_arrays(graph.outputs) || routine.uses_operation(Op::At) ||
                           std::ranges::any_of(cell_groups(routine.cells), &PortGroup::is_array);
   if (!has_loops() || !has_places) {
     return;
   }
-  shapes_ = ValueShapes(graph, routine, [this](ValueId id) {
-    return !is_leaf(routine.tape[id].op) && (needs_name(id) || own_definition_[id] != no_value);
-  });
+  find_elements_in_place();
+  find_shapes();
+  find_families();
   find_arrays();
-  const bool any = shapes_.has_sums() || has_arrays(graph.outputs) || !arrays_.empty() ||
+  const bool any = shapes_.has_sums() || has_arrays(graph.outputs) ||
+                   std::ranges::any_of(arrays_, [](const LocalArray& one) { return !one.values.empty(); }) ||
                    std::ranges::any_of(cell_groups(routine.cells), &PortGroup::is_array);
   if (any) {
     loops_ = loop_words();
   }
+}
+
+void StepWriter::find_shapes() {
+  std::vector<bool> in_array(routine.tape.size(), false);
+  for (const LocalArray& array : arrays_) {
+    for (const ValueId id : array.values) {
+      in_array[id] = true;
+    }
+  }
+  shapes_ = {};
+  shapes_ = ValueShapes(graph, routine, in_array, [this](ValueId id) { return has_name(id); });
 }
 
 namespace {
@@ -207,19 +220,28 @@ void StepWriter::write_array(LocalArray& array, std::string& text) {
   if (std::exchange(array.is_begun, true)) {
     return;
   }
+  if (array.first == no_value) {
+    const std::string_view family =
+        locals_.make({graph.nodes[section_].owner(), word_for(routine.tape[array.values[array.values.size() - 1]])});
+    return write_elements(array.values, family, array.reads_last, text);
+  }
   const Statement& first = routine.step[array.first];
   const std::string_view owner = graph.nodes[first.target].owner();
   const std::string_view name = first.field.empty()
                                     ? locals_.make({array.variable})
                                     : locals_.make({owner, element_of(first.field)->vector, first.what});
-  write_elements(array.values, name, text);
+  write_elements(array.values, name, false, text);
 }
 
-void StepWriter::write_elements(std::span<const ValueId> values, std::string_view name, std::string& text) {
+void StepWriter::write_elements(std::span<const ValueId> values, std::string_view name, bool reads_last,
+                                std::string& text) {
   const auto elements = declare_elements(name, routine.tape[values.front()].type, values.size(), text);
   std::vector<Row> rows;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    rows.push_back({.value = values[i], .element = elements[i]});
+    rows.push_back({.value = values[i], .element = elements[i], .reads_last = reads_last});
+    if (reads_last) {
+      expressions.name(values[i], elements[i]);
+    }
   }
   write_rows(rows, text);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -242,14 +264,16 @@ std::vector<std::string_view> StepWriter::declare_elements(std::string_view name
 
 template <class Use>
 void StepWriter::for_operands(ValueId sum, std::size_t shortest, Use use) const {
-  const std::vector<ValueId> terms = shapes_.terms(routine, sum);
+  const std::vector<ValueShapes::Term> terms = shapes_.terms(routine, sum);
   for (std::size_t i = 0; i < terms.size();) {
-    const auto run = std::span(terms).subspan(i, shapes_.terms_alike_from(std::span(terms).subspan(i)));
-    i += run.size();
+    const std::size_t alike = shapes_.terms_alike_from(std::span(terms).subspan(i));
+    std::vector<ValueId> run(alike);
+    std::ranges::transform(std::span(terms).subspan(i, alike), run.begin(), &ValueShapes::Term::value);
+    i += alike;
     if (run.size() < shortest) {
       continue;
     }
-    use(run);
+    use(std::span<const ValueId>(run));
     std::vector<ValueId> operands(run.size());
     for (std::size_t arg = 0; arg < info(routine.tape[run.front()].op).arity; ++arg) {
       std::ranges::transform(run, operands.begin(), [&](ValueId id) { return routine.tape[id].args[arg]; });
@@ -266,24 +290,25 @@ void StepWriter::write_operands_of(ValueId sum, std::string& text) {
 void StepWriter::write_operands(std::span<const ValueId> values, std::string& text) {
   const auto is_new = [&](ValueId id) {
     return !is_leaf(routine.tape[id].op) && !expressions.is_named(id) && needs_name(id) &&
-           own_definition_[id] == no_value && !is_output(id) && !held_back_[id] &&
+           own_definition_[id] == no_value && family_of_[id] == no_array && !is_output(id) && !held_back_[id] &&
            routine.tape[id].type == routine.tape[values.front()].type;
   };
   if (std::ranges::all_of(values, is_new) && are_independent(values, section_)) {
-    write_elements(values, locals_.make({graph.nodes[section_].owner(), word_for(routine.tape[values.front()])}), text);
+    write_elements(values, locals_.make({graph.nodes[section_].owner(), word_for(routine.tape[values.front()])}), false,
+                   text);
   }
 }
 
 /// Values that have names of their own are copied into an array: a loop over rows reads each of them once a row.
 void StepWriter::gather_operands(std::span<const ValueId> values,
                                  std::vector<std::pair<ValueId, std::uint32_t>>& called, std::string& text) {
-  std::vector<std::string> names(values.size());
+  std::vector<TermText> names(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     if ((!expressions.is_named(values[i]) && !is_leaf(routine.tape[values[i]].op)) ||
         is_literal(routine.tape[values[i]].op)) {
       return;
     }
-    expressions.print(values[i], names[i]);
+    expressions.print(values[i], names[i].text);
   }
   if (std::unordered_set<ValueId>(values.begin(), values.end()).size() != values.size() ||
       runs_of(names, shortest_loop).size() == 1) {
@@ -321,6 +346,29 @@ ValueId StepWriter::sum_within(ValueId root, bool whole) const {
   return no_value;
 }
 
+/// While a row is written that others read, its value has no name.
+class StepWriter::Opened {
+ public:
+  Opened(ExpressionPrinter& expressions, const Row& row)
+      : expressions_(expressions), row_(row), called_(expressions.called(row.value)) {
+    if (row_.reads_last) {
+      expressions_.unname(row_.value);
+    }
+  }
+  ~Opened() {
+    if (row_.reads_last) {
+      expressions_.call_again(row_.value, called_);
+    }
+  }
+  Opened(const Opened&) = delete;
+  Opened& operator=(const Opened&) = delete;
+
+ private:
+  ExpressionPrinter& expressions_;
+  const Row& row_;
+  std::uint32_t called_;
+};
+
 void StepWriter::write_rows(std::vector<Row>& rows, std::string& text) {
   for (Row& row : rows) {
     row.sum = sum_within(row.value, row.statement == nullptr);
@@ -329,6 +377,7 @@ void StepWriter::write_rows(std::vector<Row>& rows, std::string& text) {
     }
   }
   for (const Row& row : rows) {
+    const Opened opened(expressions, row);
     write_shared(row.value, row.statement != nullptr, text);
   }
   std::vector<std::pair<ValueId, std::uint32_t>> called;
@@ -366,7 +415,8 @@ void StepWriter::write_rows(std::vector<Row>& rows, std::string& text) {
 /// Whether rows are copies of a few variables. As a loop a compiler makes one wide copy of them, which waits for each
 /// narrow write before it.
 bool StepWriter::is_written_out(std::span<const Row> rows) const {
-  return loops_->several_at_once && rows.size() < shortest_sum() && std::ranges::all_of(rows, [&](const Row& row) {
+  return loops_->several_at_once && !rows.front().reads_last && rows.size() < shortest_sum() &&
+         std::ranges::all_of(rows, [&](const Row& row) {
            const Op op = routine.tape[row.value].op;
            return (is_leaf(op) && !is_literal(op)) || expressions.is_named(row.value);
          });
@@ -385,6 +435,7 @@ void StepWriter::write_row(const Row& row, std::string& text) {
 }
 
 void StepWriter::write_line(const Row& row, std::string& text) {
+  const Opened opened(expressions, row);
   begin_line(text);
   if (row.statement == nullptr) {
     set_local(row.element, row.value, text);

@@ -145,7 +145,10 @@ void StepWriter::write_shared(ValueId root, bool with_root, std::string& text) {
     if (entered) {
       const std::uint32_t own = own_definition_[id];
       const bool wanted = (with_root || id != root) && !held_back_[id];
-      if (wanted && own != no_value && array_of_[own] != no_array && !arrays_[array_of_[own]].is_begun) {
+      if (const std::uint32_t family = loops_ ? family_of_[id] : no_array;
+          wanted && family != no_array && !in_reset_ && !arrays_[family].is_begun) {
+        write_array(arrays_[family], text);
+      } else if (wanted && own != no_value && array_of_[own] != no_array && !arrays_[array_of_[own]].is_begun) {
         write_array(arrays_[array_of_[own]], text);
       } else if (wanted && (needs_name(id) || own != no_value)) {
         write_definition(id,

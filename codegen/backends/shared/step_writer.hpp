@@ -3,7 +3,7 @@
 //
 // A value that is used once is written where it is used. A value that is used more often, and one that a target cannot
 // write inside an expression, gets a name before its first use. The elements of a vector are one array, and what their
-// lines have in common is a loop (step_loops.cpp, row_loops.cpp).
+// lines have in common is a loop (step_loops.cpp, step_families.cpp, row_loops.cpp).
 #pragma once
 
 #include <algorithm>
@@ -109,8 +109,14 @@ class StepWriter {
   void write_definition(ValueId id, std::string_view name, std::string& text);
   void write_shared(ValueId root, bool with_root, std::string& text);
   [[nodiscard]] bool needs_name(ValueId id) const {
-    return routine.uses[id] > 1 || (id < must_be_named.size() && must_be_named[id]) || shapes_.is_sum(id);
+    return (routine.uses[id] > 1 && !is_written_in_place(id)) || (id < must_be_named.size() && must_be_named[id]) ||
+           shapes_.is_sum(id);
   }
+  [[nodiscard]] bool has_name(ValueId id) const {
+    return !is_leaf(routine.tape[id].op) && (needs_name(id) || own_definition_[id] != no_value);
+  }
+  [[nodiscard]] bool is_written_in_place(ValueId id) const { return id < in_place_.size() && in_place_[id]; }
+  void find_elements_in_place();
 
   // --- loops ---
 
@@ -120,17 +126,24 @@ class StepWriter {
     ValueId sum = no_value;  ///< a long sum within the value
     const Statement* statement = nullptr;
     std::string_view element{};  ///< of a local array; empty: what the statement sets
+    bool reads_last = false;     ///< the row before: rows one after the other
+  };
+  struct TermText {
+    std::string text{};
+    bool minus = false;
   };
   /// A row as text. Of its sum, the terms; its line names the sum's variable.
   struct RowText {
     std::string line{};
-    std::vector<std::string> terms{};
+    std::vector<TermText> terms{};
   };
   /// Terms that follow each other and differ in their places alone; or a single one.
   struct TermRun {
     PlacePattern pattern;
     std::size_t first = 0;
     std::size_t count = 1;
+    bool minus = false;  ///< they are taken off
+    [[nodiscard]] std::string_view sign() const { return minus ? " - " : " + "; }
   };
   /// Rows as a loop.
   struct RowLoop {
@@ -149,14 +162,20 @@ class StepWriter {
   static constexpr std::size_t looped_rows_at_once = 4;   ///< where terms are a loop
   static constexpr std::size_t written_rows_at_once = 2;  ///< where terms are written out
   void prepare_loops();
-  /// Definitions of the step whose values are the elements of one local array.
+  /// Values that are the elements of one local array.
   struct LocalArray {
     std::vector<ValueId> values{};
-    std::uint32_t first = 0;      ///< statement of the step that defines the first element
-    std::string_view variable{};  ///< of a diagram
+    std::uint32_t first = no_value;  ///< statement of the step that defines the first element; no_value: no statement
+    std::string_view variable{};     ///< of a diagram
+    bool reads_last = false;         ///< each element but the first is computed from the one before
     bool is_begun = false;
   };
+  void find_shapes();
   void find_arrays();
+  void find_families();
+  void keep_family(std::vector<ValueId> values, bool reads_last);
+  void drop_families();
+  [[nodiscard]] bool is_in_order(const LocalArray& array) const;
   [[nodiscard]] std::vector<std::uint32_t> elements_of_block(std::size_t begin) const;
   [[nodiscard]] std::vector<std::uint32_t> elements_of_variable(
       std::size_t begin, const std::unordered_map<std::uint32_t, ElementName>& variables) const;
@@ -165,7 +184,8 @@ class StepWriter {
   [[nodiscard]] std::size_t rows_from(std::span<const Statement> list) const;
   void write_group(std::span<const Statement> list, std::string& text);
   void write_array(LocalArray& array, std::string& text);
-  void write_elements(std::span<const ValueId> values, std::string_view name, std::string& text);
+  void write_elements(std::span<const ValueId> values, std::string_view name, bool reads_last, std::string& text);
+  class Opened;
   void write_rows(std::vector<Row>& rows, std::string& text);
   [[nodiscard]] ValueId sum_within(ValueId root, bool whole) const;
   /// By operand of the terms of a sum that are alike: calls `use(operands)`.
@@ -184,7 +204,7 @@ class StepWriter {
   [[nodiscard]] std::size_t shortest_sum() const {
     return loops_->several_at_once ? shortest_sum_at_once : shortest_loop;
   }
-  [[nodiscard]] static std::vector<TermRun> runs_of(const std::vector<std::string>& terms, std::size_t shortest);
+  [[nodiscard]] static std::vector<TermRun> runs_of(const std::vector<TermText>& terms, std::size_t shortest);
   [[nodiscard]] static bool has_loop(const std::vector<TermRun>& runs) {
     return std::ranges::any_of(runs, [](const TermRun& run) { return run.count > 1; });
   }
@@ -194,7 +214,7 @@ class StepWriter {
   void write_block(const RowLoop& loop, std::size_t first, std::span<const std::string_view> sums, std::string_view row,
                    std::string& text);
   void write_sums(std::span<const Sum> sums, std::string_view row, std::string& text);
-  [[nodiscard]] std::vector<std::string> terms_of(ValueId sum) const;
+  [[nodiscard]] std::vector<TermText> terms_of(ValueId sum) const;
   [[nodiscard]] std::vector<std::string_view> declare_elements(std::string_view name, Type type, std::size_t count,
                                                                std::string& text);
 
@@ -207,13 +227,15 @@ class StepWriter {
   bool in_reset_ = false;
 
   bool loops_are_prepared_ = false;
+  std::vector<bool> in_place_;  ///< by value: an element of a parameter that a loop reads where it is
   std::optional<LoopWords> loops_;
   ValueShapes shapes_;
   static constexpr std::uint32_t no_array = no_value;
   std::vector<LocalArray> arrays_;
-  std::vector<std::uint32_t> array_of_;  ///< by statement of the step: its place in arrays_, or no_array
-  std::vector<bool> held_back_;          ///< by value: the sum of a row, which is written with its row
-  std::deque<std::string> texts_;        ///< names of elements, and indentations
+  std::vector<std::uint32_t> array_of_;   ///< by statement of the step: its place in arrays_, or no_array
+  std::vector<std::uint32_t> family_of_;  ///< by value: the same, where no statement defines it
+  std::vector<bool> held_back_;           ///< by value: the sum of a row, which is written with its row
+  std::deque<std::string> texts_;         ///< names of elements, and indentations
 };
 
 }  // namespace hysteron

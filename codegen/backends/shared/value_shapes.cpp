@@ -63,26 +63,28 @@ bool ValueShapes::place_inside(const Tape& tape, ValueId id) const {
     case Op::At:
       return is_literal(tape[value.args[1]].op);
     default:
-      return std::ranges::any_of(value.args,
-                                 [&](ValueId arg) { return arg != no_value && !named_[arg] && has_place_[arg]; });
+      return std::ranges::any_of(value.args, [&](ValueId arg) {
+        return arg != no_value && (in_array_[arg] || (!named_[arg] && has_place_[arg]));
+      });
   }
 }
 
-std::vector<ValueId> ValueShapes::terms(const Routine& routine, ValueId sum) const {
-  std::vector<ValueId> list;
+std::vector<ValueShapes::Term> ValueShapes::terms(const Routine& routine, ValueId sum) const {
+  std::vector<Term> list;
   ValueId at = sum;
-  while (routine.tape[at].op == Op::Add && (at == sum || (!named_[at] && routine.uses[at] == 1))) {
-    list.push_back(routine.tape[at].args[1]);
+  while (adds(routine.tape[at].op) && (at == sum || (!named_[at] && routine.uses[at] == 1))) {
+    list.push_back({.value = routine.tape[at].args[1], .minus = routine.tape[at].op == Op::Subtract});
     at = routine.tape[at].args[0];
   }
-  list.push_back(at);
+  list.push_back({.value = at});
   std::ranges::reverse(list);
   return list;
 }
 
-std::size_t ValueShapes::terms_alike_from(std::span<const ValueId> terms) const {
+std::size_t ValueShapes::terms_alike_from(std::span<const Term> terms) const {
   std::size_t count = 1;
-  while (count < terms.size() && shape_[terms[count]] == shape_[terms[0]]) {
+  while (count < terms.size() && terms[count].minus == terms[0].minus &&
+         shape_[terms[count].value] == shape_[terms[0].value]) {
     ++count;
   }
   return count;
@@ -97,10 +99,10 @@ bool ValueShapes::has_loop(std::span<const ValueId> rows) const {
 }
 
 bool ValueShapes::is_long(const Routine& routine, ValueId id) const {
-  const std::vector<ValueId> list = terms(routine, id);
+  const std::vector<Term> list = terms(routine, id);
   for (std::size_t i = 0; i + shortest_loop <= list.size();) {
     const std::size_t count = terms_alike_from(std::span(list).subspan(i));
-    if (count >= shortest_loop && !named_[list[i]] && has_place_[list[i]]) {
+    if (count >= shortest_loop && !named_[list[i].value] && has_place_[list[i].value]) {
       return true;
     }
     i += count;

@@ -4,22 +4,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <bit>
 #include <string_view>
 
 #include "codegen/backends/shared/port_groups.hpp"
 #include "codegen/backends/st/bench_blocks.hpp"
 #include "codegen/backends/st/bench_results.hpp"
+#include "codegen/backends/st/bench_values.hpp"
 #include "codegen/backends/st/comment.hpp"
-#include "codegen/backends/st/printer.hpp"
+#include "codegen/backends/st/literals.hpp"
 #include "codegen/backends/st/shape.hpp"
 #include "codegen/backends/st/words.hpp"
 
 namespace hysteron {
 namespace {
-
-/// A signal that changes no more often than this is written as a CASE over the steps, else as an array.
-constexpr std::size_t most_changes_in_a_case = 16;
 
 std::uint32_t array_length(std::size_t numbered_from_one) {
   return static_cast<std::uint32_t>(numbered_from_one + 1);
@@ -28,7 +25,11 @@ std::uint32_t array_length(std::size_t numbered_from_one) {
 class BenchText {
  public:
   BenchText(const StBench& bench, const StDialect& dialect, const std::vector<BenchBlock>& blocks)
-      : bench_(bench), dialect_(dialect), blocks_(blocks), names_(bench_words(dialect), LetterCase::Upper) {
+      : bench_(bench),
+        dialect_(dialect),
+        blocks_(blocks),
+        names_(bench_words(dialect), LetterCase::Upper),
+        values_(dialect, names_) {
     for (const BenchResult& one : bench_results()) {
       names_.take(one.name);
     }
@@ -55,28 +56,7 @@ class BenchText {
   }
 
  private:
-  [[nodiscard]] std::string local(std::string_view name) const {
-    return std::string(dialect_.local_prefix).append(name);
-  }
-  [[nodiscard]] std::string real(double value) const {
-    return st_literal(Type::Real, value, {.float32 = false, .small_literals = dialect_.small_literals});
-  }
-  [[nodiscard]] std::string value(Type type, double value, bool float32) const {
-    const std::string digits = st_literal(type, value, {.float32 = float32, .small_literals = dialect_.small_literals});
-    return (float32 && type == Type::Real ? "REAL#" : "") + digits;
-  }
-
-  /// A declared variable, in the body.
-  std::string declare(std::string_view name, std::string type, std::uint32_t count, std::string remark,
-                      std::vector<std::string> values = {}) {
-    own_.push_back({.name = std::string(name),
-                    .type = std::move(type),
-                    .length = count,
-                    .values = std::move(values),
-                    .remark = std::move(remark)});
-    return local(name);
-  }
-
+  [[nodiscard]] std::string local(std::string_view name) const { return values_.local(name); }
   // --- the body ---
 
   std::string body() {
@@ -124,21 +104,22 @@ class BenchText {
     Variables made;
     const std::string& name = block.made.block.name;
     const std::string type = dialect_.shape == StDialect::Shape::Source ? fmt::format("\"{}\"", name) : name;
-    made.instance = declare(names_.make({name, "1"}), type, 1, "the block under test");
+    made.instance = values_.declare(names_.make({name, "1"}), type, 1, "the block under test");
     // Elements of an array are set where they are: compilers differ on which arrays may be handed over in a call.
     for (const PortGroup& group : port_groups(graph.inputs)) {
       for (std::uint32_t i = group.first; i < group.first + group.length; ++i) {
-        made.inputs.push_back(group.is_array() ? fmt::format("{}.{}", made.instance, block.made.interface.inputs[i])
-                                               : declare(names_.make({name, graph.inputs[i].name}),
-                                                         std::string(st_type(graph.inputs[i].type, block.float32)), 1,
-                                                         "an input of it"));
+        made.inputs.push_back(group.is_array()
+                                  ? fmt::format("{}.{}", made.instance, block.made.interface.inputs[i])
+                                  : values_.declare(names_.make({name, graph.inputs[i].name}),
+                                                    std::string(st_type(graph.inputs[i].type, block.float32)), 1,
+                                                    "an input of it"));
       }
     }
     for (const std::size_t i : block.changed) {
       const Parameter& parameter = graph.parameters[i];
-      made.parameters.push_back(declare(names_.make({name, parameter.path}),
-                                        std::string(st_type(parameter.field.type, block.float32)), 1,
-                                        "a parameter that some test sets"));
+      made.parameters.push_back(values_.declare(names_.make({name, parameter.path}),
+                                                std::string(st_type(parameter.field.type, block.float32)), 1,
+                                                "a parameter that some test sets"));
     }
     variables_.push_back(std::move(made));
   }
@@ -150,92 +131,22 @@ class BenchText {
     const Graph& graph = block.program.graph;
     const std::string number = fmt::format("T{}", i + 1);
     append(text, fmt::format("      {}:  (* {} *)\n", i + 1, st_comment(one.name)));
-    append(text, fmt::format("        {} := {};\n        {} := {};\n        {} := {};\n", local("STEPS"), one.steps,
-                             local("ABSOLUTE"), real(one.absolute), local("RELATIVE"), real(one.relative)));
+    append(text,
+           fmt::format("        {} := {};\n        {} := {};\n        {} := {};\n", local("STEPS"), one.steps,
+                       local("ABSOLUTE"), values_.real(one.absolute), local("RELATIVE"), values_.real(one.relative)));
     for (std::size_t p = 0; p < block.changed.size(); ++p) {
       const Parameter& parameter = one.program->graph.parameters[block.changed[p]];
       append(text, fmt::format("        {} := {};\n", variables_[b].parameters[p],
-                               value(parameter.field.type, parameter.value.front(), block.float32)));
+                               values_.value(parameter.field.type, parameter.value.front(), block.float32)));
     }
     for (std::size_t p = 0; p < graph.inputs.size(); ++p) {
-      write_input({.target = variables_[b].inputs[p], .type = graph.inputs[p].type, .float32 = block.float32},
-                  one.inputs[p], names_.make({number, graph.inputs[p].name}), text);
+      values_.write_input({.target = variables_[b].inputs[p], .type = graph.inputs[p].type, .float32 = block.float32},
+                          one.inputs[p], names_.make({number, graph.inputs[p].name}), text);
     }
     for (std::size_t slot = 0; slot < one.expected.size(); ++slot) {
       const StExpectation& expected = one.expected[slot];
-      write_expectation(slot + 1, expected, one.steps, names_.make({number, graph.outputs[expected.output].name}),
-                        text);
-    }
-  }
-
-  struct Target {
-    std::string target;
-    Type type = Type::Real;
-    bool float32 = false;
-  };
-
-  void write_input(const Target& to, const std::vector<double>& values, std::string_view array, std::string& text) {
-    std::vector<std::size_t> changes;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      if (k == 0 || std::bit_cast<std::uint64_t>(values[k]) != std::bit_cast<std::uint64_t>(values[k - 1])) {
-        changes.push_back(k);
-      }
-    }
-    if (changes.size() == 1) {
-      append(text, fmt::format("        {} := {};\n", to.target, value(to.type, values.front(), to.float32)));
-    } else if (changes.size() <= most_changes_in_a_case) {
-      append(text, "        CASE ", local("TEST_STEP"), " OF\n");
-      for (const std::size_t k : changes) {
-        append(text, fmt::format("          {}: {} := {};\n", k, to.target, value(to.type, values[k], to.float32)));
-      }
-      text += "        END_CASE;\n";
-    } else {
-      append(text, fmt::format("        {} := {}[{}];\n", to.target, array_of(array, to.type, to.float32, values),
-                               local("TEST_STEP")));
-    }
-  }
-
-  std::string array_of(std::string_view name, Type type, bool float32, const std::vector<double>& values) {
-    std::vector<std::string> texts;
-    texts.reserve(values.size());
-    for (const double one : values) {
-      texts.push_back(st_literal(type, one, {.float32 = float32, .small_literals = dialect_.small_literals}));
-    }
-    return declare(name, std::string(st_type(type, float32)), static_cast<std::uint32_t>(values.size()), "by step",
-                   std::move(texts));
-  }
-
-  void write_expectation(std::size_t slot, const StExpectation& expected, std::size_t steps, std::string_view array,
-                         std::string& text) {
-    const std::string check = fmt::format("{}[{}] := {};", local("CHECKED"), slot, expected.output + 1);
-    const std::string wanted = fmt::format("{}[{}]", local("WANTED"), slot);
-    const auto& values = expected.values;
-    const bool constant =
-        std::ranges::all_of(values, [&](const auto& one) { return one.second == values.begin()->second; });
-    if (values.size() == steps && constant) {
-      append(text, fmt::format("        {} {} := {};\n", check, wanted, real(values.begin()->second)));
-    } else if (values.size() <= most_changes_in_a_case) {
-      append(text, "        CASE ", local("TEST_STEP"), " OF\n");
-      for (const auto& [step, value] : values) {
-        append(text, fmt::format("          {}: {} {} := {};\n", step, check, wanted, real(value)));
-      }
-      text += "        END_CASE;\n";
-    } else {
-      std::vector<double> dense(steps);
-      std::vector<double> asked(steps);
-      for (const auto& [step, value] : values) {
-        dense[step] = value;
-        asked[step] = 1.0;
-      }
-      const std::string from = array_of(array, Type::Real, false, dense);
-      const std::string assign = fmt::format("{} {} := {}[{}];\n", check, wanted, from, local("TEST_STEP"));
-      if (values.size() == steps) {
-        append(text, "        ", assign);
-      } else {
-        const std::string which = array_of(names_.make({array, "asked"}), Type::Bool, false, asked);
-        append(text,
-               fmt::format("        IF {}[{}] THEN\n          {}        END_IF;\n", which, local("TEST_STEP"), assign));
-      }
+      values_.write_expectation(slot + 1, expected, one.steps,
+                                names_.make({number, graph.outputs[expected.output].name}), text);
     }
   }
 
@@ -272,25 +183,11 @@ class BenchText {
     for (std::size_t i = 0; i < most_outputs_; ++i) {
       const std::string actual = fmt::format("{}[{}]", local("ACTUAL"), i + 1);
       const bool here = i < graph.outputs.size();
-      append(text, as_real(actual, here ? graph.outputs[i].type : Type::Real,
-                           here ? fmt::format("{}.{}", own.instance, pins.outputs[i]) : "0.0", here && block.float32));
+      append(text,
+             bench_actual(actual, here ? graph.outputs[i].type : Type::Real,
+                          here ? fmt::format("{}.{}", own.instance, pins.outputs[i]) : "0.0", here && block.float32));
       append(text, fmt::format("        {}[{}] := {};\n", local("EXACT"), i + 1,
                                here && graph.outputs[i].type != Type::Real ? "TRUE" : "FALSE"));
-    }
-  }
-
-  static std::string as_real(const std::string& target, Type type, const std::string& from, bool float32) {
-    switch (type) {
-      case Type::Bool:
-        return fmt::format("        {0} := 0.0;\n        IF {1} THEN\n          {0} := 1.0;\n        END_IF;\n", target,
-                           from);
-      case Type::Int:
-        return fmt::format("        {} := DINT_TO_LREAL({});\n", target, from);
-      case Type::Word:
-        return fmt::format("        {} := UINT_TO_LREAL(WORD_TO_UINT({}));\n", target, from);
-      default:
-        return float32 ? fmt::format("        {} := REAL_TO_LREAL({});\n", target, from)
-                       : fmt::format("        {} := {};\n", target, from);
     }
   }
 
@@ -323,7 +220,7 @@ class BenchText {
         {.name = "OUTPUT", .type = "DINT"},
         {.name = "ALLOWED", .type = "LREAL"},
         {.name = "WRONG", .type = "BOOL"}};
-    for (StVariable& one : own_) {
+    for (StVariable& one : values_.take_declared()) {
       (one.values.empty() ? memory : fixed).push_back(std::move(one));
     }
     std::vector<StSection> list{std::move(input), std::move(output)};
@@ -372,7 +269,7 @@ class BenchText {
   const std::vector<BenchBlock>& blocks_;
   Identifiers names_;
   std::vector<Variables> variables_;  ///< by block
-  std::vector<StVariable> own_;
+  BenchValues values_;
   std::size_t most_outputs_ = 0;
   std::size_t slots_ = 0;
 };

@@ -39,6 +39,21 @@ std::vector<StVariable> bench_result_variables() {
   return list;
 }
 
+std::string bench_actual(const std::string& target, Type type, const std::string& from, bool float32) {
+  switch (type) {
+    case Type::Bool:
+      return fmt::format("        {0} := 0.0;\n        IF {1} THEN\n          {0} := 1.0;\n        END_IF;\n", target,
+                         from);
+    case Type::Int:
+      return fmt::format("        {} := DINT_TO_LREAL({});\n", target, from);
+    case Type::Word:
+      return fmt::format("        {} := UINT_TO_LREAL(WORD_TO_UINT({}));\n", target, from);
+    default:
+      return float32 ? fmt::format("        {} := REAL_TO_LREAL({});\n", target, from)
+                     : fmt::format("        {} := {};\n", target, from);
+  }
+}
+
 std::string bench_comparison(const BenchComparison& of) {
   constexpr std::string_view form =
       R"(    (* what came, against what is expected; then whether each output is a number *)

@@ -28,6 +28,9 @@ struct BenchComparison {
   std::size_t outputs = 0;    ///< most of a block
 };
 
+/// The statement that takes an output over as a number: a truth value as 0 or 1.
+[[nodiscard]] std::string bench_actual(const std::string& target, Type type, const std::string& from, bool float32);
+
 /// First what is expected, then all outputs: whether they are numbers at all. X - X is 0 for each finite X alone.
 [[nodiscard]] std::string bench_comparison(const BenchComparison& of);
 

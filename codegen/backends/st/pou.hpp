@@ -75,11 +75,4 @@ struct StBlockAndCaller {
 /// allows.
 StBlockAndCaller make_st_pou(const Program& program, const StOptions& options);
 
-/// The name of the type of arrays of a length. Where an array is handed to a block, some compilers want both to be of
-/// one named type.
-std::string st_array_type(std::uint16_t length);
-
-/// The sections as text.
-std::string st_declarations(const std::vector<StSection>& sections);
-
 }  // namespace hysteron

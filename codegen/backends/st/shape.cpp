@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "codegen/backends/st/declarations.hpp"
 #include "support/sha256.hpp"
 
 namespace hysteron {

@@ -6,6 +6,7 @@
 
 #include "codegen/backends/shared/calls.hpp"
 #include "codegen/backends/shared/identifiers.hpp"
+#include "codegen/backends/st/declarations.hpp"
 #include "codegen/backends/st/library_block.hpp"
 #include "codegen/backends/st/printer.hpp"
 #include "codegen/backends/st/shape.hpp"

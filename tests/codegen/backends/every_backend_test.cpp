@@ -29,6 +29,7 @@
 #include "codegen/backends/fmu/model_description.hpp"
 #include "codegen/backends/st/st.hpp"
 #include "codegen/interpreter/machine.hpp"
+#include "support/single.hpp"
 #include "tests/codegen/backends/recorded_run.hpp"
 #include "tests/codegen/backends/same_inputs.hpp"
 #include "tests/codegen/random_body.hpp"
@@ -81,7 +82,7 @@ std::vector<double> every_row(const EveryDiagram& diagram, same::source& from) {
   std::vector<double> row;
   for (int i = 0; i < 3; ++i) {
     const double value = same::real_number(&from, diagram.extremes);
-    row.push_back(diagram.float32 ? static_cast<double>(static_cast<float>(value)) : value);
+    row.push_back(diagram.float32 ? nearest_single(value) : value);
   }
   row.push_back(static_cast<double>(same::next_number(&from) % 2));
   row.push_back(static_cast<double>(same::next_number(&from) % 8 == 0));
@@ -92,7 +93,7 @@ std::vector<double> every_row(const EveryDiagram& diagram, same::source& from) {
   if (diagram.has_vectors()) {
     for (int i = 0; i < 3; ++i) {
       const double value = same::real_number(&from, diagram.extremes);
-      row.push_back(diagram.float32 ? static_cast<double>(static_cast<float>(value)) : value);
+      row.push_back(diagram.float32 ? nearest_single(value) : value);
     }
     for (int i = 0; i < 2; ++i) {
       row.push_back(static_cast<double>(same::next_number(&from) % 2));

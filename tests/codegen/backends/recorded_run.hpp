@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "codegen/interpreter/machine.hpp"
+#include "support/single.hpp"
 
 namespace hysteron::testing {
 
@@ -44,7 +45,7 @@ inline std::vector<double> random_rows(std::size_t steps, std::uint64_t seed) {
     for (std::size_t i = 0; i < 3; ++i) {
       const double fine = static_cast<double>(next() >> 11U) * 0x1p-53 * 6.0 - 3.0;
       const double coarse = static_cast<double>(static_cast<int>(next() % 7) - 3);
-      rows.push_back(static_cast<double>(static_cast<float>(next() % 8 == 0 ? coarse : fine)));
+      rows.push_back(nearest_single(next() % 8 == 0 ? coarse : fine));
     }
     rows.push_back(static_cast<double>(next() % 2));
     rows.push_back(static_cast<double>(next() % 8 == 0));

@@ -68,6 +68,46 @@ std::string matrix_gain_in_c(std::size_t rows, std::size_t columns) {
       columns - 1, rows - 1, numbers(rows * columns), rows)));
 }
 
+Program continuous(std::size_t poles, std::size_t zeros) {
+  return compile_text(
+      fmt::format("FUNCTION_BLOCK T (* @ts 1ms *) VAR_INPUT U : LREAL; R : BOOL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR "
+                  "VAR G : HY_TRANSFER_FUNCTION_S := (NUM := {}, DEN := {}); END_VAR\n"
+                  "G(XIN := U, R1 := R); Y := G.XOUT; END_FUNCTION_BLOCK",
+                  numbers(zeros + 1), numbers(poles + 1)));
+}
+
+/// Each integrator of the chain reads the one before, and each power of c the last.
+TEST(StepLoops, AChainIsALoop) {
+  for (const std::size_t zeros : {0U, 4U, 9U}) {
+    const std::string twelve = step_in_c(continuous(12, zeros));
+    const std::string sixteen = step_in_c(continuous(16, zeros));
+    EXPECT_EQ(count_of(twelve, "\n"), count_of(sixteen, "\n")) << sixteen;
+    EXPECT_LT(count_of(sixteen, "\n"), 70U) << sixteen;
+  }
+  const std::string step = step_in_c(continuous(5, 0));
+  EXPECT_NE(step.find("  for (size_t i = 0U; i < 4U; ++i) {\n"
+                      "    g_product[i + 1U] = g_product[i] * g_product[0];\n"
+                      "  }\n"),
+            std::string::npos)
+      << step;
+}
+
+TEST(StepLoops, ADifferenceOfManyTermsIsALoop) {
+  const std::string text = generate_st(continuous(6, 0), {.dialect = *st_dialect("portable")}).front().text;
+  EXPECT_NE(text.find("  G_DIFFERENCE := U;\n"
+                      "  FOR TERM := 0 TO 5 DO\n"
+                      "    G_DIFFERENCE := G_DIFFERENCE - G_DEN[TERM + 1] * G_SUM[TERM];\n"
+                      "  END_FOR;\n"),
+            std::string::npos)
+      << text;
+}
+
+/// Four values behind the first one are the shortest chain: below, the lines take less flash.
+TEST(StepLoops, AShortChainStaysLines) {
+  EXPECT_EQ(count_of(step_in_c(continuous(4, 0)), "for ("), 0U);
+  EXPECT_GT(count_of(step_in_c(continuous(5, 0)), "for ("), 2U);
+}
+
 /// Up to eight terms are one line, and two rows of them share a round of the loop.
 TEST(StepLoops, TwoRowsOfShortSumsAtOnce) {
   const std::string step = matrix_gain_in_c(5, 3);

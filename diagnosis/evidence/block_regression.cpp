@@ -238,40 +238,45 @@ BlockRegression::Score BlockRegression::with(std::span<const Law* const> laws, b
 }
 
 MatrixXd BlockRegression::left_with_slack(const Terms& terms, const std::vector<VectorXd>& without) const {
+  struct Open {
+    const Blocks::Run* run = nullptr;
+    double beyond = 0.0;  ///< the squares of what lies beyond the slack, and of what is missing there without laws
+    double gap = 0.0;
+  };
   const Index fixed = known_.cols();
   const Index own = terms.columns.cols();
   MatrixXd held_out = MatrixXd::Zero(counts_.rows(), counts_.cols());
-  MatrixXd open_gap = held_out;  // of rows that the laws leave open: what is missing there
+  const auto energy = [&](const Blocks::Run& run) -> double& {
+    return held_out(static_cast<Index>(run.block), static_cast<Index>(run.output));
+  };
+  std::vector<Open> open;
   double tested = 0.0;
   double tested_gap = 0.0;
   for (const Blocks::Run& run : blocks_.runs()) {
     const VectorXd& c = without[run.block];
-    const auto known_rows = known_.middleRows(run.first, run.size);
     const auto slack_rows = terms.slacks.middleRows(run.first, run.size);
     const auto gap = gap_.segment(run.first, run.size);
-    const VectorXd left = residuals_.segment(run.first, run.size) + known_rows * c.head(fixed) +
+    const VectorXd left = residuals_.segment(run.first, run.size) +
+                          known_.middleRows(run.first, run.size) * c.head(fixed) +
                           terms.columns.middleRows(run.first, run.size) * c.tail(own);
     const VectorXd free = slack_rows * c.tail(own);
     const double weight = weights_[static_cast<Index>(run.output)];
-    double& energy = held_out(static_cast<Index>(run.block), static_cast<Index>(run.output));
-    double& open = open_gap(static_cast<Index>(run.block), static_cast<Index>(run.output));
     for (Index row = 0; row < run.size; ++row) {
       if ((slack_rows.row(row).array() == 0.0).all()) {
-        energy += left[row] * left[row];
+        energy(run) += left[row] * left[row];
         tested += weight * left[row] * left[row];
         tested_gap += weight * gap[row] * gap[row];
-      } else if (const double out = beyond(left[row], free[row]); out > 0.0) {
-        energy += out * out;
       } else {
-        open += gap[row] * gap[row];
+        const double out = beyond(left[row], free[row]);
+        open.push_back({.run = &run, .beyond = out * out, .gap = gap[row] * gap[row]});
       }
     }
   }
-  if (!is_held_to_tests_) {
-    return held_out;
+  const double share = !is_held_to_tests_ ? 0.0 : tested_gap > 0.0 ? tested / tested_gap : 1.0;
+  for (const Open& row : open) {
+    energy(*row.run) += std::max(row.beyond, share * row.gap);
   }
-  const double share = tested_gap > 0.0 ? tested / tested_gap : 1.0;
-  return held_out + share * open_gap;
+  return held_out;
 }
 
 BlockRegression::Score BlockRegression::bare() const {

@@ -8,7 +8,8 @@
 
 namespace hysteron::diagnosis {
 
-/// A number of an effect, and the standard error of it by leaving blocks out; 0 where it was given by a grid.
+/// A number of an effect, and the standard error of it by leaving blocks out; 0 where it was given by a grid, not a
+/// number where it was fitted to all blocks.
 struct LawValue {
   std::string name{};
   double value = 0.0;

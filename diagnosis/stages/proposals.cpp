@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -33,15 +35,14 @@ RunSet run_of(const Explanation& one) {
   return {.residuals = one.fit.residuals, .families = families_of(one.variant), .effects = one.variant.effects.size()};
 }
 
-/// Of what was told and has no run: what it promises of the calibrated diagram's.
-RunSet promise_of(const Evidence& told, const Explanation& calibrated) {
+/// Of what was told and has no run: what cannot be run is no nearer to the record than the calibrated diagram.
+RunSet unrun(const Evidence& told, const Explanation& calibrated) {
   const SetFinding& first = told.sets.front();
   std::set<std::string> families;
   for (const LawFinding& law : first.laws) {
     families.insert(law.family);
   }
   return {.residuals = calibrated.fit.residuals,
-          .left = 1.0 - first.closed,
           .families = {families.begin(), families.end()},
           .effects = first.laws.size()};
 }
@@ -126,8 +127,7 @@ Runs runs_of(const std::vector<Told>& told, const Judged& judged, const Diagnosi
   const Explanation& calibrated = judged.calibrated();
   Runs result{.searched = searched_sets(judged)};
   for (const Told& one : told) {
-    result.sets.push_back(one.fitted.explanation ? run_of(*one.fitted.explanation)
-                                                 : promise_of(one.evidence, calibrated));
+    result.sets.push_back(one.fitted.explanation ? run_of(*one.fitted.explanation) : unrun(one.evidence, calibrated));
   }
   result.told = told.size();
   for (const Explanation* const one : result.searched) {
@@ -139,12 +139,12 @@ Runs runs_of(const std::vector<Told>& told, const Judged& judged, const Diagnosi
   result.votes = votes_of_runs(judged.record.task, result.sets, options.seed, options.prior, rules);
   const double gap = calibrated.fit.residuals.squaredNorm();
   for (const RunSet& one : result.sets) {
-    result.closed.push_back(1.0 - one.left * one.residuals.squaredNorm() / gap);
+    result.closed.push_back(1.0 - one.residuals.squaredNorm() / gap);
   }
   return result;
 }
 
-Evidence evidence_of_search(const Runs& runs) {
+Evidence evidence_of_search(const Runs& runs, const Task& task) {
   Evidence result;
   std::vector<std::size_t> order;
   for (std::size_t i = runs.told; i < runs.sets.size(); ++i) {
@@ -164,6 +164,14 @@ Evidence evidence_of_search(const Runs& runs) {
                      .edge = in_the_diagram(one.edge, fitted.variant.effects)};
       for (const auto& [pin, driver] : one.wires) {
         law.drivers.push_back(driver);
+      }
+      for (std::size_t j = 0; j < one.paths.size(); ++j) {
+        if (const std::optional<Index> at = place_in_fit(task, fitted, one.paths[j])) {
+          law.values.push_back({.name = one.parameters[j].name,
+                                .value = fitted.fit.x[*at],
+                                .error = std::numeric_limits<double>::quiet_NaN(),  // of a fit to all blocks
+                                .unit = one.parameters[j].unit});
+        }
       }
       const auto family = std::ranges::find(result.families, law.family, &FamilyFinding::family);
       law.closed = family == result.families.end() ? 0.0 : family->closed;

@@ -11,8 +11,8 @@
 
 #include "diagnosis/evidence/evidence.hpp"
 #include "diagnosis/evidence/explained.hpp"
-#include "diagnosis/evidence/run_votes.hpp"
 #include "diagnosis/stages/judged.hpp"
+#include "diagnosis/verdict/run_votes.hpp"
 
 namespace hysteron::diagnosis {
 
@@ -45,7 +45,7 @@ struct Runs {
 
 /// What the search tells, as evidence: its sets by the votes, their families each with its part of what a set closes,
 /// by what each closes alone.
-[[nodiscard]] Evidence evidence_of_search(const Runs& runs);
+[[nodiscard]] Evidence evidence_of_search(const Runs& runs, const Task& task);
 
 /// Each family as probable as what tells it, in front what closes most with what is most probable.
 void weigh_families(const Runs& runs, const std::vector<Told>& told, Evidence& evidence);

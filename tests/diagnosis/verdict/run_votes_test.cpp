@@ -1,4 +1,4 @@
-#include "diagnosis/evidence/run_votes.hpp"
+#include "diagnosis/verdict/run_votes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -56,14 +56,6 @@ TEST(RunVotes, OfOneFormulaTwiceTheErrorIsTheSame) {
   const std::vector<double> found =
       votes(recorded({"Y"}), {leaving({1.0}, {"lag"}, 1), leaving({1.001}, {"lag"}, 1), leaving({3.0}, {"play"}, 1)});
   EXPECT_EQ(found[0], 1.0);  // nearer in every draw, if by a thousandth
-}
-
-TEST(RunVotes, WithoutARunAPromiseCounts) {
-  RunSet promise = leaving({1.0}, {"play"}, 1);
-  promise.left = 0.1;
-  EXPECT_GT(votes(recorded({"Y"}), {leaving({0.9}, {"lag"}, 1), promise})[1], 0.99);
-  promise.left = 0.95;
-  EXPECT_LT(votes(recorded({"Y"}), {leaving({0.5}, {"lag"}, 1), promise})[1], 0.01);
 }
 
 /// Each output by its own scale: a tenth less of a small one counts as a tenth less of a large one.

@@ -21,8 +21,7 @@ namespace hysteron::diagnosis {
 
 /// A set of effects in the diagram.
 struct RunSet {
-  VectorXd residuals{};  ///< of all outputs, over the whole records
-  double left = 1.0;     ///< of their energy: less than 1 where a set is held by its promise, and by no run
+  VectorXd residuals{};                 ///< of all outputs, over the whole records
   std::vector<std::string> families{};  ///< of the effects, sorted, each once
   std::size_t effects = 0;
 };

@@ -1,4 +1,4 @@
-#include "diagnosis/evidence/run_votes.hpp"
+#include "diagnosis/verdict/run_votes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,8 +36,7 @@ std::vector<double> votes_of_runs(const Task& task, std::span<const RunSet> sets
       if (first) {
         found->second = rules[policy::model_error] * error(random);
       }
-      double left = std::log(std::max(sets[i].left, 1e-300)) + found->second +
-                    rules[policy::price] * static_cast<double>(sets[i].effects);
+      double left = found->second + rules[policy::price] * static_cast<double>(sets[i].effects);
       for (const HeldOut& output : energies[i]) {
         double squares = 0.0;
         double counts = 0.0;

@@ -9,8 +9,7 @@
 
 namespace hysteron::diagnosis {
 
-/// Throws InputError HY730 for an effect that neither the library nor the file of
-/// the diagram has.
+/// Throws InputError HY730 for an effect that neither the library nor the file of the diagram has.
 void refuse_undiagnosable(const std::vector<std::string>& wanted, const Program& program);
 
 /// The family of each effect of the library and of the diagram's file, by its identifier.

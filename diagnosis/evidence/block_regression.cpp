@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "diagnosis/evidence/draws.hpp"
 #include "support/numbers.hpp"
 
 namespace hysteron::diagnosis {
@@ -310,11 +311,7 @@ void BlockRegression::weigh(const MatrixXd& held_out) {
 }
 
 double BlockRegression::log_square(const MatrixXd& held_out, const VectorXd& weights) const {
-  double sum = 0.0;
-  for (Index output = 0; output < held_out.cols(); ++output) {
-    sum += std::log(std::max(weights.dot(held_out.col(output)) / weights.dot(counts_.col(output)), 1e-300));
-  }
-  return sum / static_cast<double>(held_out.cols());
+  return diagnosis::log_square(held_out, counts_, weights);
 }
 
 double BlockRegression::log_square(const MatrixXd& held_out) const {

@@ -7,10 +7,10 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <random>
 #include <set>
 #include <utility>
 
+#include "diagnosis/evidence/draws.hpp"
 #include "diagnosis/evidence/gap_budget.hpp"
 #include "diagnosis/evidence/missing_space.hpp"
 #include "diagnosis/evidence/open_loop.hpp"
@@ -120,9 +120,7 @@ struct Votes {
 };
 Votes vote(const std::vector<Explored>& spaces, View& sets, std::uint64_t seed, const Prior& prior,
            const Rules& rules) {
-  std::mt19937_64 random(seed);
-  std::exponential_distribution<double> weight(1.0);
-  std::normal_distribution<double> error(0.0, 1.0);
+  Draws draws(seed, spaces.front().blocks->count(), rules);
   Votes votes;
   // What no draw changes: it would be found some thousand times.
   struct Entry {
@@ -144,21 +142,15 @@ Votes vote(const std::vector<Explored>& spaces, View& sets, std::uint64_t seed, 
   const auto count = static_cast<int>(policy::draws.value);
   double sum = 0.0;
   for (int draw = 0; draw < count; ++draw) {
-    VectorXd weights(static_cast<Index>(spaces.front().blocks->count()));
-    std::ranges::generate(weights, [&] { return weight(random); });
+    draws.draw();
     std::vector<double> bare;
     for (const Explored& one : spaces) {
-      bare.push_back(one.regression->log_square(one.bare.score.held_out, weights));
+      bare.push_back(one.regression->log_square(one.bare.score.held_out, draws.weights()));
     }
-    std::map<std::vector<std::string>, double> errors;  // of a formula: the same for all sets of the same families
     const auto left_by = [&](const Entry& entry) {
       const LawSet& set = *entry.set;
-      const auto [found, first] = errors.emplace(entry.families, 0.0);
-      if (first) {
-        found->second = rules[policy::model_error] * error(random);
-      }
-      return spaces[set.space].regression->log_square(set.score.held_out, weights) - bare[set.space] + found->second +
-             rules[policy::price] * static_cast<double>(set.laws.size());
+      return spaces[set.space].regression->log_square(set.score.held_out, draws.weights()) - bare[set.space] +
+             draws.cost(entry.families, set.laws.size());
     };
     const Entry* best = nullptr;
     double least = std::numeric_limits<double>::infinity();

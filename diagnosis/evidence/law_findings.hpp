@@ -76,7 +76,7 @@ struct MissingPicture {
 };
 
 struct Evidence {
-  std::vector<FamilyFinding> families{};  ///< most probable first
+  std::vector<FamilyFinding> families{};  ///< by what each closes times how probable it is, largest first
   std::vector<SetFinding> sets{};         ///< most probable first
   MissingPicture picture{};               ///< of the first family; empty where nothing is there
   std::size_t tried = 0;                  ///< laws

@@ -8,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "diagnosis/effects/known_effects.hpp"
+
 namespace hysteron::diagnosis {
 namespace {
 
@@ -31,20 +33,24 @@ std::vector<const Explanation*> searched_sets(const Judged& judged) {
   return result;
 }
 
-RunSet run_of(const Explanation& one) {
-  return {.residuals = one.fit.residuals, .families = families_of(one.variant), .effects = one.variant.effects.size()};
+RunSet run_of(const Explanation& one, const VectorXd& residuals, const std::map<std::string, std::string>& family_of) {
+  std::set<std::string> families;
+  for (const Applied& effect : one.variant.effects) {
+    families.insert(family_of.at(effect.effect));
+  }
+  return {
+      .residuals = residuals, .families = {families.begin(), families.end()}, .effects = one.variant.effects.size()};
 }
 
 /// Of what was told and has no run: what cannot be run is no nearer to the record than the calibrated diagram.
-RunSet unrun(const Evidence& told, const Explanation& calibrated) {
+RunSet unrun(const Evidence& told, const RunSet& calibrated) {
   const SetFinding& first = told.sets.front();
   std::set<std::string> families;
   for (const LawFinding& law : first.laws) {
     families.insert(law.family);
   }
-  return {.residuals = calibrated.fit.residuals,
-          .families = {families.begin(), families.end()},
-          .effects = first.laws.size()};
+  return {
+      .residuals = calibrated.residuals, .families = {families.begin(), families.end()}, .effects = first.laws.size()};
 }
 
 std::size_t best_between(const std::vector<double>& votes, std::size_t from, std::size_t to) {
@@ -78,7 +84,6 @@ void add_searched(const Runs& runs, std::size_t set, const Explanation& fitted, 
   for (const std::string& family : families) {
     sum += runs.alone(family);
   }
-  const std::vector<EffectKind> kinds = kinds_in(fitted.variant);
   for (const std::string& family : families) {
     if (std::ranges::find(evidence.families, family, &FamilyFinding::family) != evidence.families.end()) {
       continue;
@@ -87,7 +92,7 @@ void add_searched(const Runs& runs, std::size_t set, const Explanation& fitted, 
     FamilyFinding finding{.family = family, .alone = alone};
     finding.closed = runs.closed[set] * (sum > 0.0 ? alone / sum : 1.0 / static_cast<double>(families.size()));
     for (const Applied& one : fitted.variant.effects) {
-      if (family_of(kinds, one) == family) {
+      if (runs.family_of.at(one.effect) == family) {
         finding.effect = one.effect;
         finding.edge = in_the_diagram(one.edge, fitted.variant.effects);
         break;
@@ -105,12 +110,13 @@ std::size_t Runs::best_told() const {
 }
 
 std::size_t Runs::best_searched() const {
-  return best_between(votes, told, votes.size());
+  return best_between(votes, told, nothing());
 }
 
 bool Runs::are_for_told() const {
-  const double of_search = std::accumulate(votes.begin() + static_cast<std::ptrdiff_t>(told), votes.end(), 0.0);
-  return told > 0 && votes[best_told()] >= of_search;
+  const double of_search = std::accumulate(votes.begin() + static_cast<std::ptrdiff_t>(told),
+                                           votes.begin() + static_cast<std::ptrdiff_t>(nothing()), 0.0);
+  return told > 0 && votes[best_told()] >= std::max(of_search, votes[nothing()]);
 }
 
 double Runs::alone(const std::string& family) const {
@@ -125,21 +131,23 @@ double Runs::alone(const std::string& family) const {
 
 Runs runs_of(const std::vector<Told>& told, const Judged& judged, const DiagnosisOptions& options, const Rules& rules) {
   const Explanation& calibrated = judged.calibrated();
-  Runs result{.searched = searched_sets(judged)};
+  Runs result{.told = told.size(),
+              .searched = searched_sets(judged),
+              .family_of = families_by_effect(*calibrated.variant.program)};
+  const RunSet nothing{.residuals = calibrated.fit.residuals};
   for (const Told& one : told) {
-    result.sets.push_back(one.fitted.explanation ? run_of(*one.fitted.explanation) : unrun(one.evidence, calibrated));
+    const auto& fitted = one.fitted.explanation;
+    result.sets.push_back(fitted ? run_of(*fitted, fitted->fit.residuals, result.family_of)
+                                 : unrun(one.evidence, nothing));
   }
-  result.told = told.size();
   for (const Explanation* const one : result.searched) {
-    result.sets.push_back(run_of(*one));
+    const bool is_chosen = one == result.searched.front();
+    result.sets.push_back(run_of(*one, is_chosen ? judged.residuals() : one->fit.residuals, result.family_of));
   }
-  if (!result.searched.empty()) {
-    result.sets[result.told].residuals = judged.residuals();
-  }
+  result.sets.push_back(nothing);
   result.votes = votes_of_runs(judged.record.task, result.sets, options.seed, options.prior, rules);
-  const double gap = calibrated.fit.residuals.squaredNorm();
   for (const RunSet& one : result.sets) {
-    result.closed.push_back(1.0 - one.residuals.squaredNorm() / gap);
+    result.closed.push_back(1.0 - one.residuals.squaredNorm() / nothing.residuals.squaredNorm());
   }
   return result;
 }
@@ -147,7 +155,7 @@ Runs runs_of(const std::vector<Told>& told, const Judged& judged, const Diagnosi
 Evidence evidence_of_search(const Runs& runs, const Task& task) {
   Evidence result;
   std::vector<std::size_t> order;
-  for (std::size_t i = runs.told; i < runs.sets.size(); ++i) {
+  for (std::size_t i = runs.told; i < runs.nothing(); ++i) {
     if (runs.votes[i] > 0.0) {
       order.push_back(i);
     }
@@ -157,10 +165,9 @@ Evidence evidence_of_search(const Runs& runs, const Task& task) {
     const Explanation& fitted = *runs.searched[i - runs.told];
     add_searched(runs, i, fitted, result);
     SetFinding set{.space = "runs", .probability = runs.votes[i], .closed = runs.closed[i]};
-    const std::vector<EffectKind> kinds = kinds_in(fitted.variant);
     for (const Applied& one : fitted.variant.effects) {
       LawFinding law{.effect = one.effect,
-                     .family = family_of(kinds, one),
+                     .family = runs.family_of.at(one.effect),
                      .edge = in_the_diagram(one.edge, fitted.variant.effects)};
       for (const auto& [pin, driver] : one.wires) {
         law.drivers.push_back(driver);

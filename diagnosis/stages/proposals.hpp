@@ -1,11 +1,12 @@
 // What was proposed as the cause, each in its own way, and what the runs of the whole diagram say of it.
 //
-// The evidence tells a set in each of its views; the search has fitted sets of its own. The votes of the runs
-// (run_votes.hpp) say how probable each proposal is. A family is as probable as what tells it, times how probable it is
-// there.
+// The evidence tells a set in each of its views; the search has fitted sets of its own; and it may be that no effect is
+// there. The votes of the runs (run_votes.hpp) say how probable each proposal is. A family is as probable as what tells
+// it, times how probable it is there.
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,16 +26,19 @@ struct Told {
 
 /// All that was proposed, how probable each set is, and what it closes of the gap.
 struct Runs {
-  std::vector<RunSet> sets{};  ///< of what is told, then of the search
+  std::vector<RunSet> sets{};  ///< of what is told, then of the search, and last the calibrated diagram as it is
   std::vector<double> votes{};
   std::vector<double> closed{};
   std::size_t told = 0;
   std::vector<const Explanation*> searched{};
+  std::map<std::string, std::string> family_of{};  ///< by effect
 
   /// The most probable of what is told, and of the search; asked only where there is one.
   [[nodiscard]] std::size_t best_told() const;
   [[nodiscard]] std::size_t best_searched() const;
-  /// Whether what is told is more probable than all that the search has.
+  /// Where the calibrated diagram stands.
+  [[nodiscard]] std::size_t nothing() const { return sets.size() - 1; }
+  /// Whether what is told is more probable than all that the search has, and than no effect at all.
   [[nodiscard]] bool are_for_told() const;
   /// What a family closes by itself, in the best run that has no other.
   [[nodiscard]] double alone(const std::string& family) const;

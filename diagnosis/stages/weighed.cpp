@@ -30,8 +30,11 @@ Told told_in(Weighing& weighing, std::size_t view, const Judged& judged, const D
   for (int run = 0; run < static_cast<int>(policy::runs.value); ++run) {
     result.evidence = weighing.told(rules, view);
     if (!is_worth_telling(result.evidence, rules)) {
-      result.fitted = {};
-      return result;
+      break;
+    }
+    if (result.evidence.sets.front().laws.empty()) {  // no effect is a proposal of its own: proposals.hpp
+      weighing.strike_out_first(view);
+      continue;
     }
     result.fitted = explained(record.task, record.top, result.evidence.sets.front(), calibrated,
                               {.effects = options.effects,
@@ -103,8 +106,9 @@ Judged weighed(Judged judged, const Answer& answer, const DiagnosisOptions& opti
     }
   } else {
     judged.evidence = std::move(untold);
+    judged.evidence.is_told = false;
   }
-  if (!is_open_loop && !runs.sets.empty()) {
+  if (!is_open_loop && runs.nothing() > 0) {
     weigh_families(runs, told, judged.evidence);
   }
   judged.budget = weighing.budget(shown, output);

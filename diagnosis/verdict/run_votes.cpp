@@ -1,52 +1,53 @@
 #include "diagnosis/verdict/run_votes.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <map>
-#include <memory>
-#include <random>
-#include <set>
 
-#include "codegen/graph/definition.hpp"
+#include "diagnosis/evidence/draws.hpp"
 #include "diagnosis/policy.hpp"
 #include "diagnosis/verdict/held_out.hpp"
 
 namespace hysteron::diagnosis {
+namespace {
+
+/// Sums of squares and counts of a run, by block and output.
+struct Energies {
+  MatrixXd squares{};
+  MatrixXd counts{};
+};
+
+Energies energies_of(const Task& task, const VectorXd& residuals) {
+  const std::vector<HeldOut> outputs = by_blocks(task, residuals);
+  const auto blocks = std::ssize(outputs.front().squares);
+  Energies result{.squares = MatrixXd(blocks, std::ssize(outputs)), .counts = MatrixXd(blocks, std::ssize(outputs))};
+  for (std::size_t output = 0; output < outputs.size(); ++output) {
+    const auto column = static_cast<Index>(output);
+    result.squares.col(column) = Eigen::Map<const VectorXd>(outputs[output].squares.data(), blocks);
+    result.counts.col(column) = Eigen::Map<const VectorXd>(outputs[output].counts.data(), blocks);
+  }
+  return result;
+}
+
+}  // namespace
 
 std::vector<double> votes_of_runs(const Task& task, std::span<const RunSet> sets, std::uint64_t seed,
                                   const Prior& prior, const Rules& rules) {
-  std::mt19937_64 random(seed);
-  std::exponential_distribution<double> weight(1.0);
-  std::normal_distribution<double> error(0.0, 1.0);
-  std::vector<std::vector<HeldOut>> energies;
-  for (const RunSet& one : sets) {
-    energies.push_back(by_blocks(task, one.residuals));
-  }
   std::vector<double> votes(sets.size(), 0.0);
+  if (sets.empty()) {
+    return votes;
+  }
+  std::vector<Energies> energies;
+  for (const RunSet& one : sets) {
+    energies.push_back(energies_of(task, one.residuals));
+  }
+  Draws draws(seed, static_cast<std::size_t>(energies.front().squares.rows()), rules);
   double sum = 0.0;
-  for (int draw = 0; draw < static_cast<int>(policy::draws.value) && !sets.empty(); ++draw) {
-    std::vector<double> weights(energies.front().front().squares.size());
-    std::ranges::generate(weights, [&] { return weight(random); });
-    std::map<std::vector<std::string>, double> errors;  // of a formula: the same for all sets of the same families
+  for (int draw = 0; draw < static_cast<int>(policy::draws.value); ++draw) {
+    draws.draw();
     std::size_t best = 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < sets.size(); ++i) {
-      const auto [found, first] = errors.emplace(sets[i].families, 0.0);
-      if (first) {
-        found->second = rules[policy::model_error] * error(random);
-      }
-      double left = found->second + rules[policy::price] * static_cast<double>(sets[i].effects);
-      for (const HeldOut& output : energies[i]) {
-        double squares = 0.0;
-        double counts = 0.0;
-        for (std::size_t block = 0; block < weights.size(); ++block) {
-          squares += weights[block] * output.squares[block];
-          counts += weights[block] * output.counts[block];
-        }
-        left +=
-            std::log(std::max(squares / std::max(counts, 1e-300), 1e-300)) / static_cast<double>(energies[i].size());
-      }
+      const double left = log_square(energies[i].squares, energies[i].counts, draws.weights()) +
+                          draws.cost(sets[i].families, sets[i].effects);
       if (left < least) {
         least = left;
         best = i;
@@ -60,26 +61,6 @@ std::vector<double> votes_of_runs(const Task& task, std::span<const RunSet> sets
     one /= sum;
   }
   return votes;
-}
-
-std::vector<EffectKind> kinds_in(const Variant& variant) {
-  Diagnostics none;  // the text compiled before
-  const auto source = std::make_shared<const language::SourceFile>(language::parse("text", variant.text, none));
-  return effect_kinds(define(source, none));
-}
-
-std::string family_of(const std::vector<EffectKind>& kinds, const Applied& effect) {
-  const auto kind = std::ranges::find(kinds, effect.effect, &EffectKind::id);
-  return kind == kinds.end() ? effect.effect : kind->family;
-}
-
-std::vector<std::string> families_of(const Variant& variant) {
-  const std::vector<EffectKind> kinds = kinds_in(variant);
-  std::set<std::string> families;
-  for (const Applied& one : variant.effects) {
-    families.insert(family_of(kinds, one));
-  }
-  return {families.begin(), families.end()};
 }
 
 }  // namespace hysteron::diagnosis

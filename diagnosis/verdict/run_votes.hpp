@@ -30,11 +30,4 @@ struct RunSet {
 [[nodiscard]] std::vector<double> votes_of_runs(const Task& task, std::span<const RunSet> sets, std::uint64_t seed,
                                                 const Prior& prior, const Rules& rules);
 
-/// All effects that a diagram's text knows: those of the catalogue and the user's own.
-[[nodiscard]] std::vector<EffectKind> kinds_in(const Variant& variant);
-[[nodiscard]] std::string family_of(const std::vector<EffectKind>& kinds, const Applied& effect);
-
-/// The families of the effects in a diagram, sorted, each once.
-[[nodiscard]] std::vector<std::string> families_of(const Variant& variant);
-
 }  // namespace hysteron::diagnosis

@@ -20,7 +20,7 @@ std::string Round::effect() const {
 std::vector<std::string> Round::rivals() const {
   std::vector<std::string> names;
   for (const diagnosis::Rival& rival : found.rivals) {
-    std::string name = fmt::format("{}", fmt::join(rival.effects, " + "));
+    std::string name = rival.effects.empty() ? "calibration alone" : fmt::format("{}", fmt::join(rival.effects, " + "));
     // The same effects may stand on several edges.
     if (rival.effects != std::vector{found.effects.front().id} && std::ranges::find(names, name) == names.end()) {
       names.push_back(std::move(name));

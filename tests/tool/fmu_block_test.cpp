@@ -8,6 +8,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/tool/motor_bench.hpp"
 #include "tests/tool/workbench.hpp"
@@ -323,6 +326,22 @@ END_FUNCTION_BLOCK
   EXPECT_THAT(done.err, AllOf(HasSubstr("HY750"), HasSubstr("no multiple of the 0.001 s")));
 }
 
+/// The rows of a record, each with what a run of it gave as its first output.
+std::vector<std::pair<std::string, std::string>> rows_with_output(const std::string& record, const std::string& run) {
+  std::istringstream inputs(record);
+  std::istringstream outputs(run);
+  std::string in;
+  std::string out;
+  std::getline(inputs, in);
+  std::getline(outputs, out);
+  std::vector<std::pair<std::string, std::string>> rows;
+  while (std::getline(inputs, in) && std::getline(outputs, out)) {
+    const auto first = out.find(',') + 1;
+    rows.emplace_back(in, out.substr(first, out.find(',', first) - first));
+  }
+  return rows;
+}
+
 TEST(FmuBlock, TuneFindsItsParametersAndSaysWhatItCost) {
   const MotorBench bench;
   bench.write("p.toml", "[parameters]\nGAIN = 2.5\n");
@@ -333,15 +352,8 @@ TEST(FmuBlock, TuneFindsItsParametersAndSaysWhatItCost) {
   bench.write("log.csv", rows);
   ASSERT_EQ(bench.shell("hysteron run loop.st --in log.csv --out out.csv --params p.toml").code, 0);
   std::string measured = "t,u,y\n";
-  std::istringstream inputs(rows);
-  std::istringstream outputs(bench.read("out.csv"));
-  std::string in;
-  std::string out;
-  std::getline(inputs, in);
-  std::getline(outputs, out);
-  while (std::getline(inputs, in) && std::getline(outputs, out)) {
-    const auto first = out.find(',') + 1;
-    measured += in + "," + out.substr(first, out.find(',', first) - first) + "\n";
+  for (const auto& [in, out] : rows_with_output(rows, bench.read("out.csv"))) {
+    measured += in + "," + out + "\n";
   }
   bench.write("measured.csv", measured);
   // Mode 8 refuses every gain above 3: a point without a value, from which the fit has to come back.
@@ -374,18 +386,11 @@ TEST(FmuBlock, ADiagnosisNamesTheEffectAtItsOutput) {
   }
   bench.write("in.csv", rows);
   ASSERT_EQ(bench.shell("hysteron run truth.st --in in.csv --out out.csv").code, 0);
-  std::istringstream inputs(rows);
-  std::istringstream outputs(bench.read("out.csv"));
-  std::string in;
-  std::string out;
-  std::getline(inputs, in);
-  std::getline(outputs, out);
   std::string measured = "t,U,Y\n";
   std::uint32_t noise = 1;
-  while (std::getline(inputs, in) && std::getline(outputs, out)) {
+  for (const auto& [in, out] : rows_with_output(rows, bench.read("out.csv"))) {
     noise = noise * 1664525U + 1013904223U;
-    measured +=
-        fmt::format("{},{:.7f}\n", in, std::stod(out.substr(out.find(',') + 1)) + 2e-4 * (noise / 4294967296.0 - 0.5));
+    measured += fmt::format("{},{:.7f}\n", in, std::stod(out) + 2e-4 * (noise / 4294967296.0 - 0.5));
   }
   bench.write("log.csv", measured);
   bench.write("p.toml", "[parameters]\nGAIN = 1.0\n\n[fit]\nGAIN = {}\n");

@@ -8,12 +8,12 @@
 namespace hysteron::diagnosis {
 namespace {
 
-/// A view that tells one family for sure, and a search with two sets.
+/// A view that tells one family for sure, a search with two sets, and no effect at all.
 struct Proposed {
   explicit Proposed(std::vector<double> votes) {
     runs.told = told.size();
-    runs.sets = {{.families = {"play"}}, {.families = {"lag"}}, {.families = {"creep", "lag"}}};
-    runs.closed = {0.9, 0.6, 0.8};
+    runs.sets = {{.families = {"play"}}, {.families = {"lag"}}, {.families = {"creep", "lag"}}, {}};
+    runs.closed = {0.9, 0.6, 0.8, 0.0};
     runs.votes = std::move(votes);
   }
   std::vector<Told> told{
@@ -24,32 +24,37 @@ struct Proposed {
 };
 
 TEST(Proposals, WhatIsToldIsBelievedWhereItIsMoreProbableThanAllOfTheSearch) {
-  EXPECT_TRUE(Proposed({0.5, 0.3, 0.2}).runs.are_for_told());
-  EXPECT_FALSE(Proposed({0.4, 0.3, 0.3}).runs.are_for_told());
-  Proposed none({0.0, 0.5, 0.5});
+  EXPECT_TRUE(Proposed({0.5, 0.3, 0.2, 0.0}).runs.are_for_told());
+  EXPECT_FALSE(Proposed({0.4, 0.3, 0.3, 0.0}).runs.are_for_told());
+  Proposed none({0.0, 0.5, 0.5, 0.0});
   none.runs.told = 0;
   EXPECT_FALSE(none.runs.are_for_told());
 }
 
+TEST(Proposals, WhatIsLessProbableThanNoEffectIsNotTold) {
+  EXPECT_FALSE(Proposed({0.4, 0.1, 0.0, 0.5}).runs.are_for_told());
+  EXPECT_TRUE(Proposed({0.5, 0.1, 0.0, 0.4}).runs.are_for_told());
+}
+
 TEST(Proposals, TheMostProbableOfEach) {
-  const Proposed found({0.2, 0.3, 0.5});
+  const Proposed found({0.1, 0.2, 0.3, 0.4});
   EXPECT_EQ(found.runs.best_told(), 0U);
   EXPECT_EQ(found.runs.best_searched(), 2U);
 }
 
 TEST(Proposals, AFamilyIsAsProbableAsWhatTellsIt) {
-  const Proposed found({0.6, 0.3, 0.1});
+  const Proposed found({0.5, 0.3, 0.1, 0.1});
   Evidence evidence = found.told.front().evidence;
   weigh_families(found.runs, found.told, evidence);
   ASSERT_EQ(evidence.families.size(), 2U);
-  EXPECT_EQ(evidence.families[0].family, "lag");  // 0.7 of 0.9 before 0.6 of 0.8
-  EXPECT_NEAR(evidence.families[0].probability, 0.6 * 0.5 + 0.3 + 0.1, 1e-12);
-  EXPECT_NEAR(evidence.families[1].probability, 0.6, 1e-12);
-  EXPECT_NEAR(evidence.families[1].by_record, 0.6, 1e-12);
+  EXPECT_EQ(evidence.families[0].family, "lag");  // 0.65 of 0.9 before 0.5 of 0.8
+  EXPECT_NEAR(evidence.families[0].probability, 0.5 * 0.5 + 0.3 + 0.1, 1e-12);
+  EXPECT_NEAR(evidence.families[1].probability, 0.5, 1e-12);
+  EXPECT_NEAR(evidence.families[1].by_record, 0.5, 1e-12);
 }
 
 TEST(Proposals, AFamilyAloneIsTheBestRunWithoutAnother) {
-  const Proposed found({0.6, 0.3, 0.1});
+  const Proposed found({0.5, 0.3, 0.1, 0.1});
   EXPECT_EQ(found.runs.alone("lag"), 0.6);
   EXPECT_EQ(found.runs.alone("creep"), 0.0);  // only beside another
 }

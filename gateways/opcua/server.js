@@ -10,9 +10,14 @@ import {
   setWarningLogger, WellKnownRoles,
 } from "node-opcua";
 
+import { Door } from "./door.js";
+
 const ROLES = { read: WellKnownRoles.Observer, write: WellKnownRoles.Operator };
 
 const CERTIFICATE_DAYS = 3650;
+const GUESTS = 32; // connections without a session: who asks for the endpoints, and who is about to have one
+const PATIENCE = 10_000; // ms, of which a session needs less than one
+const CLOSING = 256; // connections that are pushed out, and are not closed yet
 const LINE_PAUSE = 1_000; // ms: what a client can make the library say fills no log
 const OF_NO_INTEREST = /NODE-OPCUA-W27|security-revert/; // about the padding of a policy that is not offered here
 
@@ -108,7 +113,7 @@ export async function makeServer({ address, port, state, users, isAnonymous, ses
     },
     buildInfo: { productName: "hysteron-opcua", productUri: "urn:hysteron:opcua", manufacturerName: "Hysteron", softwareVersion: version },
     isAuditing: false,
-    maxConnectionsPerEndpoint: sessions + 4, // for who only asks for the endpoints
+    maxConnectionsPerEndpoint: sessions + GUESTS + CLOSING, // the door bounds them before
     serverCapabilities: {
       maxSessions: sessions,
       maxSubscriptionsPerSession: 8,
@@ -123,6 +128,10 @@ export async function makeServer({ address, port, state, users, isAnonymous, ses
       },
     },
   });
+  const door = new Door({ guests: GUESTS, patience: PATIENCE });
+  door.watch(() => server.endpoints[0]?.port ?? port);
+  server.on("session_activated", (session) => door.seat(session, session.channel));
+  server.on("session_closed", (session) => door.leave(session));
   await server.initialize();
   return server;
 }

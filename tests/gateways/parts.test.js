@@ -46,6 +46,53 @@ test("every unit that the library knows by the same code has the same symbol or 
   assert.ok(compared > 25, `${compared}`);
 });
 
+test("who says nothing keeps no other connection out", async () => {
+  const { Door } = await part("door.js");
+  const { EventEmitter } = require("node:events");
+  let port = 0;
+  const arrives = (door, { from = "10.0.0.1", bytesRead = 0 } = {}) => {
+    const socket = Object.assign(new EventEmitter(), { remoteAddress: from, remotePort: (port += 1), bytesRead, isOpen: true });
+    socket.destroy = () => { socket.isOpen = false; };
+    door.admit(socket);
+    return socket;
+  };
+  const door = new Door({ guests: 3, patience: 60_000 });
+  const spoke = arrives(door, { bytesRead: 8 });
+  const seated = arrives(door, { bytesRead: 8 });
+  const session = {};
+  door.seat(session, seated);
+  assert.equal(door.guests, 1, "who has a session is no guest");
+  const silent = [arrives(door), arrives(door)];
+  const next = arrives(door, { bytesRead: 8 });
+  assert.deepEqual([spoke, seated, ...silent, next].map(({ isOpen }) => isOpen), [true, true, false, true, true], "the silent one that is there longest goes");
+  arrives(door, { bytesRead: 8 });
+  assert.equal(silent[1].isOpen, false);
+  const other = arrives(door, { from: "10.0.0.2", bytesRead: 8 });
+  assert.equal(spoke.isOpen, false, "all have spoken: the oldest goes");
+  for (let k = 0; k < 20; k += 1) arrives(door, { bytesRead: 8 });
+  assert.ok(other.isOpen, "a crowd from one address pushes out its own");
+  assert.ok(seated.isOpen);
+  assert.equal(door.guests, 3);
+  door.leave(session);
+  assert.equal(door.guests, 4, "without its session a connection is a guest's again");
+  arrives(door, { bytesRead: 8 });
+  seated.emit("close");
+});
+
+test("a guest has its time, and no more", async (t) => {
+  const { Door } = await part("door.js");
+  const { EventEmitter } = require("node:events");
+  t.mock.timers.enable({ apis: ["setTimeout"] });
+  const door = new Door({ guests: 3, patience: 10_000 });
+  const sockets = [1, 2].map((remotePort) => Object.assign(new EventEmitter(), { remoteAddress: "10.0.0.1", remotePort, bytesRead: 0,
+    destroy() { this.isDestroyed = true; this.emit("close"); } }));
+  sockets.forEach((socket) => door.admit(socket));
+  door.seat({}, sockets[0]);
+  t.mock.timers.tick(10_001);
+  assert.deepEqual(sockets.map(({ isDestroyed }) => isDestroyed ?? false), [false, true]);
+  assert.equal(door.guests, 0);
+});
+
 test("a snapshot's time follows from the periods of the task", async () => {
   const { SourceTime } = await part("source_time.js");
   let steady = 1000;

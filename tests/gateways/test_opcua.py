@@ -1,6 +1,7 @@
 """A task that `hysteron serve` runs, as a client of OPC UA sees it through the gateway."""
 import os
 import shutil
+import socket
 import subprocess
 import time
 import unittest
@@ -280,6 +281,19 @@ class OfATask(unittest.TestCase):
         cycles = client.read(node="Status/task.cycles")["value"]
         self.assertGreater(eventually(lambda: client.read(node="Status/task.cycles")["value"], lambda now: now > cycles + 100),
                            cycles + 100)
+
+    def test_who_says_nothing_or_only_greets_keeps_no_client_out(self):
+        client = self.start("--sessions", "2")
+        hello = b"HELF" + (38).to_bytes(4, "little") + bytes(4) + 2 * (65536).to_bytes(4, "little") + bytes(8) + (6).to_bytes(4, "little") + b"opc://"
+        for greeting in (b"", hello):
+            crowd = []
+            self.addCleanup(lambda all=crowd: [one.close() for one in all])
+            for _ in range(400):
+                crowd.append(socket.create_connection(("127.0.0.1", self.gateway.port), timeout=10))
+                crowd[-1].sendall(greeting)
+            self.connect(client)
+            self.assertEqual(client.read(node="Status/task.state")["value"], 1)
+            client.close()
 
 
 @unittest.skipIf(missing(), missing())

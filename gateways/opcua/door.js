@@ -1,0 +1,89 @@
+// Who is at the door: connections without a session. They cost a place each, and no word from them is needed to hold it.
+//
+// A guest has some time to become a session. Where all places of guests are taken, one goes for each that comes: who has
+// said nothing first, then who comes from the address with the most guests, then who has been there longest. So silent
+// connections keep nobody out, and a crowd from one address keeps out none from another.
+
+import { subscribe } from "node:diagnostics_channel";
+
+export class Door {
+  /** @type {Map<string, {socket: import("node:net").Socket, address: string, timer: NodeJS.Timeout}>} the oldest first */
+  #guests = new Map();
+  /** @type {Map<string, {socket: import("node:net").Socket, sessions: Set<object>}>} every open connection */
+  #open = new Map();
+
+  /** @param {{guests: number, patience: number}} options so many at once; ms until a guest has to have a session */
+  constructor({ guests, patience }) {
+    this.most = guests;
+    this.patience = patience;
+  }
+
+  /** Sockets that this process accepts at a port. @param {() => number} port */
+  watch(port) {
+    subscribe("net.server.socket", ({ socket }) => {
+      if (socket.localPort === port()) this.admit(socket);
+    });
+  }
+
+  get guests() {
+    return this.#guests.size;
+  }
+
+  /** @param {import("node:net").Socket} socket */
+  admit(socket) {
+    while (this.#guests.size >= this.most) this.#pushOut();
+    const key = keyOf(socket);
+    this.#open.set(key, { socket, sessions: new Set() });
+    this.#guests.set(key, this.#guest(socket));
+    socket.once("close", () => {
+      this.#forget(key);
+      this.#open.delete(key);
+    });
+  }
+
+  /**
+   * A session is active on a connection.
+   * @param {object} session
+   * @param {{remoteAddress?: string, remotePort?: number} | undefined} channel none: its connection is closed already
+   */
+  seat(session, channel) {
+    this.leave(session);
+    const key = channel ? keyOf(channel) : "";
+    this.#open.get(key)?.sessions.add(session);
+    this.#forget(key);
+  }
+
+  /** A session has ended, or goes on elsewhere: without another one its connection is a guest's. @param {object} session */
+  leave(session) {
+    for (const [key, { socket, sessions }] of this.#open) {
+      if (sessions.delete(session) && sessions.size === 0) this.#guests.set(key, this.#guest(socket));
+    }
+  }
+
+  #guest(socket) {
+    const timer = setTimeout(() => socket.destroy(), this.patience);
+    timer.unref();
+    return { socket, address: socket.remoteAddress ?? "", timer };
+  }
+
+  #forget(key) {
+    clearTimeout(this.#guests.get(key)?.timer);
+    this.#guests.delete(key);
+  }
+
+  #pushOut() {
+    const all = [...this.#guests.values()];
+    const silent = all.filter(({ socket }) => socket.bytesRead === 0);
+    const from = new Map();
+    for (const { address } of all) from.set(address, (from.get(address) ?? 0) + 1);
+    const most = Math.max(...from.values());
+    const { socket } = silent[0] ?? all.find(({ address }) => from.get(address) === most);
+    this.#forget(keyOf(socket)); // now: its "close" comes later
+    socket.destroy();
+  }
+}
+
+/** @param {{remoteAddress?: string, remotePort?: number}} one */
+function keyOf({ remoteAddress, remotePort }) {
+  return `${remoteAddress} ${remotePort}`;
+}

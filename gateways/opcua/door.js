@@ -3,6 +3,9 @@
 // A guest has some time to become a session. Where all places of guests are taken, one goes for each that comes: who has
 // said nothing first, then who comes from the address with the most guests, then who has been there longest. So silent
 // connections keep nobody out, and a crowd from one address keeps out none from another.
+//
+// What a connection sends ends that connection at most. The library throws out of the event of a socket where a chunk is
+// longer than was agreed, and an exception there would end the process.
 
 import { subscribe } from "node:diagnostics_channel";
 
@@ -12,10 +15,14 @@ export class Door {
   /** @type {Map<string, {socket: import("node:net").Socket, sessions: Set<object>}>} every open connection */
   #open = new Map();
 
-  /** @param {{guests: number, patience: number}} options so many at once; ms until a guest has to have a session */
-  constructor({ guests, patience }) {
+  /**
+   * @param {{guests: number, patience: number, tell?: (line: string) => void}} options so many at once; ms until a guest has
+   *   to have a session; what is told of who is ended for what it sent
+   */
+  constructor({ guests, patience, tell = () => {} }) {
     this.most = guests;
     this.patience = patience;
+    this.tell = tell;
   }
 
   /** Sockets that this process accepts at a port. @param {() => number} port */
@@ -31,6 +38,7 @@ export class Door {
 
   /** @param {import("node:net").Socket} socket */
   admit(socket) {
+    this.#endAlone(socket);
     while (this.#guests.size >= this.most) this.#pushOut();
     const key = keyOf(socket);
     this.#open.set(key, { socket, sessions: new Set() });
@@ -58,6 +66,20 @@ export class Door {
     for (const [key, { socket, sessions }] of this.#open) {
       if (sessions.delete(session) && sessions.size === 0) this.#guests.set(key, this.#guest(socket));
     }
+  }
+
+  /** An exception while an event of the socket is handled ends the socket, and nothing else. */
+  #endAlone(socket) {
+    const emit = socket.emit.bind(socket);
+    socket.emit = (event, ...what) => {
+      try {
+        return emit(event, ...what);
+      } catch (problem) {
+        this.tell(`${socket.remoteAddress}: its connection is ended for what it sent (${problem.message}).`);
+        socket.destroy();
+        return true;
+      }
+    };
   }
 
   #guest(socket) {

@@ -21,14 +21,22 @@ const CLOSING = 256; // connections that are pushed out, and are not closed yet
 const LINE_PAUSE = 1_000; // ms: what a client can make the library say fills no log
 const OF_NO_INTEREST = /NODE-OPCUA-W27|security-revert/; // about the padding of a policy that is not offered here
 
+/** A line in LINE_PAUSE at most; the others are dropped. @param {(line: string) => void} tell */
+function atMost(tell) {
+  let next = 0;
+  return (line) => {
+    if (performance.now() < next) return;
+    next = performance.now() + LINE_PAUSE;
+    tell(line);
+  };
+}
+
 /** What the library says goes where ours goes. @param {(line: string) => void} tell */
 function listenToLibrary(tell) {
-  let next = 0;
+  const seldom = atMost(tell);
   const log = (...parts) => {
     const line = parts.map(String).join(" ").replace(/\x1b\[[0-9;]*m/g, "").replace(/\s+/g, " ").slice(0, 300);
-    if (OF_NO_INTEREST.test(line) || performance.now() < next) return;
-    next = performance.now() + LINE_PAUSE;
-    tell(`node-opcua: ${line}`);
+    if (!OF_NO_INTEREST.test(line)) seldom(`node-opcua: ${line}`);
   };
   setWarningLogger(log);
   setErrorLogger(log);
@@ -128,7 +136,7 @@ export async function makeServer({ address, port, state, users, isAnonymous, ses
       },
     },
   });
-  const door = new Door({ guests: GUESTS, patience: PATIENCE });
+  const door = new Door({ guests: GUESTS, patience: PATIENCE, tell: atMost(tell) });
   door.watch(() => server.endpoints[0]?.port ?? port);
   server.on("session_activated", (session) => door.seat(session, session.channel));
   server.on("session_closed", (session) => door.leave(session));

@@ -79,6 +79,24 @@ test("who says nothing keeps no other connection out", async () => {
   seated.emit("close");
 });
 
+test("what a connection sends ends that connection alone", async () => {
+  const { Door } = await part("door.js");
+  const { EventEmitter } = require("node:events");
+  const told = [];
+  const door = new Door({ guests: 3, patience: 60_000, tell: (line) => told.push(line) });
+  const [one, other] = [1, 2].map((remotePort) => Object.assign(new EventEmitter(), { remoteAddress: "10.0.0.1", remotePort, bytesRead: 8,
+    destroy() { this.isDestroyed = true; this.emit("close"); } }));
+  for (const socket of [one, other]) door.admit(socket);
+  let heard = "";
+  one.on("data", () => { throw new Error("a chunk is too long"); });
+  other.on("data", (words) => { heard = words; });
+  one.emit("data", "MSGF");
+  other.emit("data", "HELF");
+  assert.deepEqual([one.isDestroyed, other.isDestroyed, heard, door.guests], [true, undefined, "HELF", 1]);
+  assert.match(told.join(), /10\.0\.0\.1.*a chunk is too long/);
+  other.emit("close");
+});
+
 test("a guest has its time, and no more", async (t) => {
   const { Door } = await part("door.js");
   const { EventEmitter } = require("node:events");

@@ -1,7 +1,10 @@
 """A task that `hysteron serve` runs, as a client of OPC UA sees it through the gateway."""
+import contextlib
 import os
+import random
 import shutil
 import socket
+import struct
 import subprocess
 import time
 import unittest
@@ -282,10 +285,49 @@ class OfATask(unittest.TestCase):
         self.assertGreater(eventually(lambda: client.read(node="Status/task.cycles")["value"], lambda now: now > cycles + 100),
                            cycles + 100)
 
+    def hello(self):
+        url = self.gateway.url.encode()
+        body = struct.pack("<IIIIII", 0, 65536, 65536, 0, 0, len(url)) + url
+        return b"HELF" + struct.pack("<I", len(body) + 8) + body
+
+    def test_a_chunk_that_is_too_long_ends_its_own_connection_alone(self):
+        client = self.start()
+        self.connect(client)
+        for kind in (b"MSGF", b"OPNF", b"CLOF", b"MSGC"):
+            with socket.create_connection(("127.0.0.1", self.gateway.port), timeout=10) as one:
+                one.sendall(self.hello() + kind + struct.pack("<I", 65535) + 4000 * b"a")  # one packet: nobody listens yet
+                one.settimeout(30)
+                with contextlib.suppress(ConnectionError):
+                    while one.recv(4096):  # to its end
+                        pass
+        self.assertEqual(client.read(node="Status/task.state")["value"], 1)
+        self.assertIsNone(self.gateway.process.poll())
+
+    def test_no_message_ends_the_gateway(self):
+        client = self.start()
+        self.connect(client)
+        chance = random.Random(5)
+        policy = b"http://opcfoundation.org/UA/SecurityPolicy#None"
+        for _ in range(150):
+            with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", self.gateway.port), timeout=10) as one:
+                if chance.random() < 0.9:
+                    one.sendall(self.hello())
+                if chance.random() < 0.5:
+                    one.settimeout(1)
+                    one.recv(64)
+                for _ in range(chance.randint(1, 4)):
+                    body = chance.randbytes(chance.choice((0, 1, 4, 8, 24, 60, 132, 500, 3000)))
+                    if chance.random() < 0.4:  # a channel is asked for, as it should be, and then as it should not
+                        body = struct.pack("<Ii", 0, len(policy)) + policy + struct.pack("<iiII", -1, -1, 1, 1) + body
+                    size = chance.choice((len(body) + 8, len(body) + 8, 0, 7, 8, 4096, 65535, 2**31, 2**32 - 1))
+                    kind = chance.choice((b"OPN", b"MSG", b"CLO", b"HEL", b"ERR", b"RHE", b"XYZ")) + chance.choice((b"F", b"C", b"A", b"?"))
+                    one.sendall(kind + struct.pack("<I", size) + body)
+        self.assertIsNone(self.gateway.process.poll(), self.gateway.lines[-20:])
+        self.assertEqual(client.read(node="Status/task.state")["value"], 1)
+
     def test_who_says_nothing_or_only_greets_keeps_no_client_out(self):
         client = self.start("--sessions", "2")
-        hello = b"HELF" + (38).to_bytes(4, "little") + bytes(4) + 2 * (65536).to_bytes(4, "little") + bytes(8) + (6).to_bytes(4, "little") + b"opc://"
-        for greeting in (b"", hello):
+        for greeting in (b"", self.hello()):
             crowd = []
             self.addCleanup(lambda all=crowd: [one.close() for one in all])
             for _ in range(400):

@@ -10,9 +10,9 @@
 import { subscribe } from "node:diagnostics_channel";
 
 export class Door {
-  /** @type {Map<string, {socket: import("node:net").Socket, address: string, timer: NodeJS.Timeout}>} the oldest first */
+  /** @type {Map<import("node:net").Socket, NodeJS.Timeout>} the oldest first */
   #guests = new Map();
-  /** @type {Map<string, {socket: import("node:net").Socket, sessions: Set<object>}>} every open connection */
+  /** @type {Map<import("node:net").Socket, Set<object>>} the sessions of every open connection */
   #open = new Map();
 
   /**
@@ -40,12 +40,11 @@ export class Door {
   admit(socket) {
     this.#endAlone(socket);
     while (this.#guests.size >= this.most) this.#pushOut();
-    const key = keyOf(socket);
-    this.#open.set(key, { socket, sessions: new Set() });
-    this.#guests.set(key, this.#guest(socket));
+    this.#open.set(socket, new Set());
+    this.#welcome(socket);
     socket.once("close", () => {
-      this.#forget(key);
-      this.#open.delete(key);
+      this.#forget(socket);
+      this.#open.delete(socket);
     });
   }
 
@@ -56,15 +55,19 @@ export class Door {
    */
   seat(session, channel) {
     this.leave(session);
-    const key = channel ? keyOf(channel) : "";
-    this.#open.get(key)?.sessions.add(session);
-    this.#forget(key);
+    if (!channel) return;
+    for (const [socket, sessions] of this.#open) {
+      if (socket.remotePort === channel.remotePort && socket.remoteAddress === channel.remoteAddress) {
+        sessions.add(session);
+        this.#forget(socket);
+      }
+    }
   }
 
   /** A session has ended, or goes on elsewhere: without another one its connection is a guest's. @param {object} session */
   leave(session) {
-    for (const [key, { socket, sessions }] of this.#open) {
-      if (sessions.delete(session) && sessions.size === 0) this.#guests.set(key, this.#guest(socket));
+    for (const [socket, sessions] of this.#open) {
+      if (sessions.delete(session) && sessions.size === 0) this.#welcome(socket);
     }
   }
 
@@ -82,30 +85,22 @@ export class Door {
     };
   }
 
-  #guest(socket) {
-    const timer = setTimeout(() => socket.destroy(), this.patience);
-    timer.unref();
-    return { socket, address: socket.remoteAddress ?? "", timer };
+  #welcome(socket) {
+    this.#guests.set(socket, setTimeout(() => socket.destroy(), this.patience).unref());
   }
 
-  #forget(key) {
-    clearTimeout(this.#guests.get(key)?.timer);
-    this.#guests.delete(key);
+  #forget(socket) {
+    clearTimeout(this.#guests.get(socket));
+    this.#guests.delete(socket);
   }
 
   #pushOut() {
-    const all = [...this.#guests.values()];
-    const silent = all.filter(({ socket }) => socket.bytesRead === 0);
+    const all = [...this.#guests.keys()];
     const from = new Map();
-    for (const { address } of all) from.set(address, (from.get(address) ?? 0) + 1);
+    for (const { remoteAddress } of all) from.set(remoteAddress, (from.get(remoteAddress) ?? 0) + 1);
     const most = Math.max(...from.values());
-    const { socket } = silent[0] ?? all.find(({ address }) => from.get(address) === most);
-    this.#forget(keyOf(socket)); // now: its "close" comes later
+    const socket = all.find(({ bytesRead }) => bytesRead === 0) ?? all.find(({ remoteAddress }) => from.get(remoteAddress) === most);
+    this.#forget(socket); // now: its "close" comes later
     socket.destroy();
   }
-}
-
-/** @param {{remoteAddress?: string, remotePort?: number}} one */
-function keyOf({ remoteAddress, remotePort }) {
-  return `${remoteAddress} ${remotePort}`;
 }

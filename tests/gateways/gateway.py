@@ -1,10 +1,10 @@
 """The OPC UA gateway and a client of it as processes beside a test, and a live page that says what a test wants."""
 import json
-import os
 import re
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import tempfile
 import threading
@@ -47,6 +47,13 @@ def eventually(ask, expected, seconds=180):
         if (expected(answer) if callable(expected) else answer == expected) or time.monotonic() > end:
             return answer
         time.sleep(0.1)
+
+
+def hello(port, size=None):
+    """The first message of a client, whose head may state another size."""
+    url = f"opc.tcp://127.0.0.1:{port}".encode()
+    body = struct.pack("<IIIIII", 0, 65536, 65536, 0, 0, len(url)) + url
+    return b"HELF" + struct.pack("<I", size if size is not None else len(body) + 8) + body
 
 
 class Gateway:

@@ -9,8 +9,8 @@ import subprocess
 import time
 import unittest
 
-from tests.gateways.gateway import (FOLDER, PASSWORDS, TOKEN, Client, Gateway, Page, eventually, free_port, missing, point,
-                                    run)
+from tests.gateways.gateway import (FOLDER, PASSWORDS, TOKEN, Client, Gateway, Page, eventually, free_port, hello, missing,
+                                    point, run)
 from tests.web.served import Served
 
 DIAGRAM = """FUNCTION_BLOCK STAGE  (* @ts 10ms *)
@@ -285,17 +285,12 @@ class OfATask(unittest.TestCase):
         self.assertGreater(eventually(lambda: client.read(node="Status/task.cycles")["value"], lambda now: now > cycles + 100),
                            cycles + 100)
 
-    def hello(self):
-        url = self.gateway.url.encode()
-        body = struct.pack("<IIIIII", 0, 65536, 65536, 0, 0, len(url)) + url
-        return b"HELF" + struct.pack("<I", len(body) + 8) + body
-
     def test_a_chunk_that_is_too_long_ends_its_own_connection_alone(self):
         client = self.start()
         self.connect(client)
         for kind in (b"MSGF", b"OPNF", b"CLOF", b"MSGC"):
             with socket.create_connection(("127.0.0.1", self.gateway.port), timeout=10) as one:
-                one.sendall(self.hello() + kind + struct.pack("<I", 65535) + 4000 * b"a")  # one packet: nobody listens yet
+                one.sendall(hello(self.gateway.port) + kind + struct.pack("<I", 65535) + 4000 * b"a")  # one packet: nobody listens yet
                 one.settimeout(30)
                 with contextlib.suppress(ConnectionError):
                     while one.recv(4096):  # to its end
@@ -311,7 +306,7 @@ class OfATask(unittest.TestCase):
         for _ in range(150):
             with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", self.gateway.port), timeout=10) as one:
                 if chance.random() < 0.9:
-                    one.sendall(self.hello())
+                    one.sendall(hello(self.gateway.port))
                 if chance.random() < 0.5:
                     one.settimeout(1)
                     one.recv(64)
@@ -327,7 +322,7 @@ class OfATask(unittest.TestCase):
 
     def test_who_says_nothing_or_only_greets_keeps_no_client_out(self):
         client = self.start("--sessions", "2")
-        for greeting in (b"", self.hello()):
+        for greeting in (b"", hello(self.gateway.port)):
             crowd = []
             self.addCleanup(lambda all=crowd: [one.close() for one in all])
             for _ in range(400):

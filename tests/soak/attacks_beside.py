@@ -19,6 +19,7 @@ import threading
 import time
 
 from tests.gateways import gateway
+from tests.gateways.gateway import hello
 from tests.web.served import Served
 
 PATIENCE = 2.0
@@ -308,12 +309,6 @@ ON_MQTT = {
 
 
 # The gateway of OPC UA
-
-def hello(port, size=None):
-    url = f"opc.tcp://127.0.0.1:{port}".encode()
-    body = struct.pack("<IIIIII", 0, 65536, 65536, 0, 0, len(url)) + url
-    return b"HELF" + struct.pack("<I", size if size is not None else len(body) + 8) + body
-
 
 ON_OPCUA = {
     "none": lambda port, stop: stop.wait(),

@@ -94,7 +94,8 @@ inline constexpr Threshold kept_promise{"kept promise",
                                         "what part of the promised closure a fit over whole records has to keep",
                                         anything};
 inline constexpr Threshold runs{"runs", 6.0, "1", "cost: a fit over whole records each",
-                                "how many of the most probable sets are run to see whether they keep their promise"};
+                                "how many sets of a view are run: the most probable, until one keeps its promise; "
+                                "then one for each other effect that leads a set"};
 inline constexpr Threshold relevant{
     "relevant", 0.05, "1", "convention: the twentieth part", "what share of the gap an effect has to close to be named",
     anything};

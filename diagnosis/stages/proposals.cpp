@@ -105,8 +105,21 @@ void add_searched(const Runs& runs, std::size_t set, const Explanation& fitted, 
 
 }  // namespace
 
+double Runs::votes_of(std::size_t view) const {
+  return std::accumulate(votes.begin() + static_cast<std::ptrdiff_t>(begins[view]),
+                         votes.begin() + static_cast<std::ptrdiff_t>(begins[view + 1]), 0.0);
+}
+
 std::size_t Runs::best_told() const {
-  return best_between(votes, 0, told);
+  std::size_t best = 0;
+  for (std::size_t view = 1; view + 1 < begins.size(); ++view) {
+    best = votes_of(view) > votes_of(best) ? view : best;
+  }
+  return best;
+}
+
+std::size_t Runs::best_set_of(std::size_t view) const {
+  return best_between(votes, begins[view], begins[view + 1]);
 }
 
 std::size_t Runs::best_searched() const {
@@ -116,7 +129,7 @@ std::size_t Runs::best_searched() const {
 bool Runs::are_for_told() const {
   const double of_search = std::accumulate(votes.begin() + static_cast<std::ptrdiff_t>(told),
                                            votes.begin() + static_cast<std::ptrdiff_t>(nothing()), 0.0);
-  return told > 0 && votes[best_told()] >= std::max(of_search, votes[nothing()]);
+  return told > 0 && votes_of(best_told()) >= std::max(of_search, votes[nothing()]);
 }
 
 double Runs::alone(const std::string& family) const {
@@ -131,15 +144,19 @@ double Runs::alone(const std::string& family) const {
 
 Runs runs_of(const std::vector<Told>& told, const Judged& judged, const DiagnosisOptions& options, const Rules& rules) {
   const Explanation& calibrated = judged.calibrated();
-  Runs result{.told = told.size(),
-              .searched = searched_sets(judged),
-              .family_of = families_by_effect(*calibrated.variant.program)};
+  Runs result{.searched = searched_sets(judged), .family_of = families_by_effect(*calibrated.variant.program)};
   const RunSet nothing{.residuals = calibrated.fit.residuals};
   for (const Told& one : told) {
-    const auto& fitted = one.fitted.explanation;
-    result.sets.push_back(fitted ? run_of(*fitted, fitted->fit.residuals, result.family_of)
-                                 : unrun(one.evidence, nothing));
+    result.begins.push_back(result.sets.size());
+    for (const FittedSet& run : one.runs) {
+      result.sets.push_back(run_of(run.fitted, run.fitted.fit.residuals, result.family_of));
+    }
+    if (one.runs.empty()) {
+      result.sets.push_back(unrun(one.evidence, nothing));
+    }
   }
+  result.told = result.sets.size();
+  result.begins.push_back(result.told);
   for (const Explanation* const one : result.searched) {
     const bool is_chosen = one == result.searched.front();
     result.sets.push_back(run_of(*one, is_chosen ? judged.residuals() : one->fit.residuals, result.family_of));
@@ -196,8 +213,8 @@ void weigh_families(const Runs& runs, const std::vector<Told>& told, Evidence& e
     for (std::size_t view = 0; view < told.size(); ++view) {
       const std::vector<FamilyFinding>& there = told[view].evidence.families;
       if (const auto found = std::ranges::find(there, family.family, &FamilyFinding::family); found != there.end()) {
-        probability += runs.votes[view] * found->probability;
-        by_record += runs.votes[view] * found->by_record;
+        probability += runs.votes_of(view) * found->probability;
+        by_record += runs.votes_of(view) * found->by_record;
       }
     }
     for (std::size_t i = runs.told; i < runs.sets.size(); ++i) {

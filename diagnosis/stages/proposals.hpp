@@ -17,11 +17,12 @@
 
 namespace hysteron::diagnosis {
 
-/// What one view tells, and the diagram with it.
+/// What one view tells, and the diagram with its sets and with parts of them. None where the text has no place for
+/// them.
 struct Told {
   std::size_t view = 0;
   Evidence evidence{};
-  Explained fitted{};
+  std::vector<FittedSet> runs{};
 };
 
 /// All that was proposed, how probable each set is, and what it closes of the gap.
@@ -29,12 +30,17 @@ struct Runs {
   std::vector<RunSet> sets{};  ///< of what is told, then of the search, and last the calibrated diagram as it is
   std::vector<double> votes{};
   std::vector<double> closed{};
-  std::size_t told = 0;
+  std::size_t told = 0;               ///< so many of them
+  std::vector<std::size_t> begins{};  ///< by view that tells something, where its sets begin; then `told`
   std::vector<const Explanation*> searched{};
   std::map<std::string, std::string> family_of{};  ///< by effect
 
-  /// The most probable of what is told, and of the search; asked only where there is one.
+  /// The votes of all sets of what one view tells.
+  [[nodiscard]] double votes_of(std::size_t view) const;
+  /// The most probable of what is told, as a whole; its most probable set; and that of the search: asked only where
+  /// there is one.
   [[nodiscard]] std::size_t best_told() const;
+  [[nodiscard]] std::size_t best_set_of(std::size_t view) const;
   [[nodiscard]] std::size_t best_searched() const;
   /// Where the calibrated diagram stands.
   [[nodiscard]] std::size_t nothing() const { return sets.size() - 1; }

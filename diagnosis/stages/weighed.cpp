@@ -1,6 +1,8 @@
 #include "diagnosis/stages/weighed.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 #include <utility>
 
 #include "diagnosis/evidence/evidence.hpp"
@@ -21,35 +23,75 @@ bool leaves_a_cause(const Judged& judged, const Answer& answer, Rules& rules) {
          rules.is_above(policy::unexplained, left / gap);
 }
 
-/// The most probable set that a run of the whole diagram does not refute.
+std::string leading_effect(const SetFinding& set) {
+  return set.laws.empty() ? std::string() : std::ranges::max(set.laws, {}, &LawFinding::closed).effect;
+}
+
+/// The most probable set that a run of the whole diagram does not refute and, of the further ones, the most probable
+/// for each effect that closes the largest part of one: of two frictions that leave the same of what is missing, a run
+/// may know one from the other.
 Told told_in(Weighing& weighing, std::size_t view, const Judged& judged, const DiagnosisOptions& options,
              Rules& rules) {
   const Cleaned& record = judged.record;
-  const Explanation& calibrated = judged.calibrated();
+  const auto run = [&](const SetFinding& set, bool is_open_loop) {
+    return explained(record.task, record.top, set, judged.calibrated(),
+                     {.effects = options.effects,
+                      .columns = record.unused,
+                      .threads = options.threads,
+                      .is_open_loop = is_open_loop,
+                      .floor_cost = record.floor_cost},
+                     rules);
+  };
   Told result{.view = view};
-  for (int run = 0; run < static_cast<int>(policy::runs.value); ++run) {
+  auto left = static_cast<int>(policy::runs.value);
+  while (left > 0 && !result.evidence.is_told) {
     result.evidence = weighing.told(rules, view);
     if (!is_worth_telling(result.evidence, rules)) {
-      break;
-    }
-    if (result.evidence.sets.front().laws.empty()) {  // no effect is a proposal of its own: proposals.hpp
-      weighing.strike_out_first(view);
-      continue;
-    }
-    result.fitted = explained(record.task, record.top, result.evidence.sets.front(), calibrated,
-                              {.effects = options.effects,
-                               .columns = record.unused,
-                               .threads = options.threads,
-                               .is_open_loop = result.evidence.is_open_loop,
-                               .floor_cost = record.floor_cost},
-                              rules);
-    if (!result.fitted.refuted || result.evidence.is_open_loop) {
-      result.evidence.is_told = true;
       return result;
     }
-    weighing.strike_out_first(view);
+    const SetFinding& first = result.evidence.sets.front();
+    if (!first.laws.empty()) {  // no effect is a proposal of its own: proposals.hpp
+      --left;
+      Explained found = run(first, result.evidence.is_open_loop);
+      result.evidence.is_told = !found.refuted || result.evidence.is_open_loop;
+      result.runs = std::move(found.runs);
+    }
+    if (!result.evidence.is_told) {
+      weighing.strike_out_first(view);
+    }
+  }
+  if (result.evidence.is_open_loop || !result.evidence.is_told) {
+    return result;
+  }
+  std::set<std::string> leading{std::string(), leading_effect(result.evidence.sets.front())};
+  for (const SetFinding& set : result.evidence.sets) {
+    if (left > 0 && leading.insert(leading_effect(set)).second) {
+      --left;
+      std::ranges::move(run(set, false).runs, std::back_inserter(result.runs));
+    }
   }
   return result;
+}
+
+/// The laws of a set by effect and edge, sorted.
+std::vector<std::pair<std::string, std::string>> names_of(const SetFinding& set) {
+  std::vector<std::pair<std::string, std::string>> result;
+  for (const LawFinding& law : set.laws) {
+    result.emplace_back(law.effect, law.edge);
+  }
+  std::ranges::sort(result);
+  return result;
+}
+
+/// In front of the sets the one that is in the diagram: as the evidence has it or, where it has only a larger one, the
+/// part of that.
+void put_first(const SetFinding& set, std::vector<SetFinding>& sets) {
+  const auto found = std::ranges::find(sets, names_of(set), names_of);
+  if (found != sets.end()) {
+    std::rotate(sets.begin(), found, found + 1);
+  } else {
+    sets.insert(sets.begin(), set);
+  }
 }
 
 }  // namespace
@@ -92,10 +134,17 @@ Judged weighed(Judged judged, const Answer& answer, const DiagnosisOptions& opti
   const bool is_open_loop = !told.empty() && told.front().evidence.is_open_loop;
   const Runs runs = runs_of(told, judged, options, rules);
   if (is_open_loop || runs.are_for_told()) {
-    const Told& best = told[is_open_loop ? 0 : runs.best_told()];
+    const std::size_t at = is_open_loop ? 0 : runs.best_told();
+    const Told& best = told[at];
     shown = best.view;
     judged.evidence = best.evidence;
-    judged.choose(best.fitted.explanation ? *best.fitted.explanation : calibrated);
+    if (best.runs.empty()) {
+      judged.choose(calibrated);
+    } else {
+      const FittedSet& run = is_open_loop ? best.runs.back() : best.runs[runs.best_set_of(at) - runs.begins[at]];
+      put_first(run.set, judged.evidence.sets);
+      judged.choose(run.fitted);
+    }
     judged.unrepeatable.reset();
   } else if (!runs.searched.empty()) {
     shown = weighing.views() - 1;

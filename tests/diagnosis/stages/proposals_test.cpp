@@ -12,6 +12,7 @@ namespace {
 struct Proposed {
   explicit Proposed(std::vector<double> votes) {
     runs.told = told.size();
+    runs.begins = {0, 1};
     runs.sets = {{.families = {"play"}}, {.families = {"lag"}}, {.families = {"creep", "lag"}}, {}};
     runs.closed = {0.9, 0.6, 0.8, 0.0};
     runs.votes = std::move(votes);
@@ -28,6 +29,7 @@ TEST(Proposals, WhatIsToldIsBelievedWhereItIsMoreProbableThanAllOfTheSearch) {
   EXPECT_FALSE(Proposed({0.4, 0.3, 0.3, 0.0}).runs.are_for_told());
   Proposed none({0.0, 0.5, 0.5, 0.0});
   none.runs.told = 0;
+  none.runs.begins = {0};
   EXPECT_FALSE(none.runs.are_for_told());
 }
 
@@ -40,6 +42,17 @@ TEST(Proposals, TheMostProbableOfEach) {
   const Proposed found({0.1, 0.2, 0.3, 0.4});
   EXPECT_EQ(found.runs.best_told(), 0U);
   EXPECT_EQ(found.runs.best_searched(), 2U);
+}
+
+TEST(Proposals, TheSetsOfAViewStandForItTogether) {
+  Proposed found({0.3, 0.25, 0.35, 0.1});  // two sets of the first view, and one of another
+  found.runs.begins = {0, 2, 3};
+  found.runs.told = 3;
+  EXPECT_DOUBLE_EQ(found.runs.votes_of(0), 0.55);
+  EXPECT_EQ(found.runs.best_told(), 0U);
+  EXPECT_EQ(found.runs.best_set_of(0), 0U);
+  EXPECT_EQ(found.runs.best_set_of(1), 2U);
+  EXPECT_TRUE(found.runs.are_for_told());
 }
 
 TEST(Proposals, AFamilyIsAsProbableAsWhatTellsIt) {

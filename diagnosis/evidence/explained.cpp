@@ -130,11 +130,18 @@ SetFinding part_of(const SetFinding& set, std::span<const LawFinding> laws) {
   return result;
 }
 
+/// The cost of the largest set so far.
+double left_by(const std::vector<FittedSet>& runs) {
+  if (runs.empty()) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return runs.back().fitted.fit.cost;
+}
+
 }  // namespace
 
 Explained explained(const Task& task, const std::string& top, const SetFinding& set, const Explanation& calibrated,
                     const ExplainOptions& options, Rules& rules) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
   const VectorXd known = known_of(task, set, calibrated);
   const Beginning bare{.variant = calibrated.variant, .x = known};
   const auto is_placed = [&](const Beginning& one) {
@@ -168,7 +175,7 @@ Explained explained(const Task& task, const std::string& top, const SetFinding& 
     }
     Explanation best = best_from(task, starts, calibrated, options.threads);
     // With one law more and yet farther: that fit has lost its way.
-    if (best.fit.cost < (result.runs.empty() ? infinite : result.runs.back().fitted.fit.cost)) {
+    if (best.fit.cost < left_by(result.runs)) {
       result.runs.push_back({.set = part_of(set, std::span(laws).first(i + 1)), .fitted = std::move(best)});
     }
   }
@@ -176,7 +183,7 @@ Explained explained(const Task& task, const std::string& top, const SetFinding& 
     return {};
   }
   const double relevant = rules[policy::relevant] * (calibrated.fit.cost - options.floor_cost);
-  const double left = result.runs.empty() ? infinite : result.runs.back().fitted.fit.cost;
+  const double left = left_by(result.runs);
   if (options.is_open_loop && left > relevant) {
     Explanation one = unless_refused([&] {
       return beside_the_plant(task, top, begun(task, found, calibrated, 1.0), calibrated, relevant, options);

@@ -103,6 +103,16 @@ void add_searched(const Runs& runs, std::size_t set, const Explanation& fitted, 
   }
 }
 
+/// The laws of a set by effect and edge, sorted.
+std::vector<std::pair<std::string, std::string>> names_of(const SetFinding& set) {
+  std::vector<std::pair<std::string, std::string>> result;
+  for (const LawFinding& law : set.laws) {
+    result.emplace_back(law.effect, law.edge);
+  }
+  std::ranges::sort(result);
+  return result;
+}
+
 }  // namespace
 
 double Runs::votes_of(std::size_t view) const {
@@ -227,6 +237,15 @@ void weigh_families(const Runs& runs, const std::vector<Told>& told, Evidence& e
     family.by_record = by_record;
   }
   std::ranges::stable_sort(evidence.families, std::ranges::greater(), weight_of_family);
+}
+
+void put_first(const SetFinding& set, std::vector<SetFinding>& sets) {
+  const auto found = std::ranges::find(sets, names_of(set), names_of);
+  if (found != sets.end()) {
+    std::rotate(sets.begin(), found, found + 1);
+  } else {
+    sets.insert(sets.begin(), set);
+  }
 }
 
 }  // namespace hysteron::diagnosis

@@ -60,4 +60,8 @@ struct Runs {
 /// Each family as probable as what tells it, in front what closes most with what is most probable.
 void weigh_families(const Runs& runs, const std::vector<Told>& told, Evidence& evidence);
 
+/// In front of the sets the one that is in the diagram: as the evidence has it or, where it has only a larger one, the
+/// part of that.
+void put_first(const SetFinding& set, std::vector<SetFinding>& sets);
+
 }  // namespace hysteron::diagnosis

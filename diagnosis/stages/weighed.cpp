@@ -33,16 +33,16 @@ std::string leading_effect(const SetFinding& set) {
 Told told_in(Weighing& weighing, std::size_t view, const Judged& judged, const DiagnosisOptions& options,
              Rules& rules) {
   const Cleaned& record = judged.record;
-  const auto run = [&](const SetFinding& set, bool is_open_loop) {
+  Told result{.view = view};
+  const auto run = [&](const SetFinding& set) {
     return explained(record.task, record.top, set, judged.calibrated(),
                      {.effects = options.effects,
                       .columns = record.unused,
                       .threads = options.threads,
-                      .is_open_loop = is_open_loop,
+                      .is_open_loop = result.evidence.is_open_loop,
                       .floor_cost = record.floor_cost},
                      rules);
   };
-  Told result{.view = view};
   auto left = static_cast<int>(policy::runs.value);
   while (left > 0 && !result.evidence.is_told) {
     result.evidence = weighing.told(rules, view);
@@ -52,7 +52,7 @@ Told told_in(Weighing& weighing, std::size_t view, const Judged& judged, const D
     const SetFinding& first = result.evidence.sets.front();
     if (!first.laws.empty()) {  // no effect is a proposal of its own: proposals.hpp
       --left;
-      Explained found = run(first, result.evidence.is_open_loop);
+      Explained found = run(first);
       result.evidence.is_told = !found.refuted || result.evidence.is_open_loop;
       result.runs = std::move(found.runs);
     }
@@ -67,31 +67,10 @@ Told told_in(Weighing& weighing, std::size_t view, const Judged& judged, const D
   for (const SetFinding& set : result.evidence.sets) {
     if (left > 0 && leading.insert(leading_effect(set)).second) {
       --left;
-      std::ranges::move(run(set, false).runs, std::back_inserter(result.runs));
+      std::ranges::move(run(set).runs, std::back_inserter(result.runs));
     }
   }
   return result;
-}
-
-/// The laws of a set by effect and edge, sorted.
-std::vector<std::pair<std::string, std::string>> names_of(const SetFinding& set) {
-  std::vector<std::pair<std::string, std::string>> result;
-  for (const LawFinding& law : set.laws) {
-    result.emplace_back(law.effect, law.edge);
-  }
-  std::ranges::sort(result);
-  return result;
-}
-
-/// In front of the sets the one that is in the diagram: as the evidence has it or, where it has only a larger one, the
-/// part of that.
-void put_first(const SetFinding& set, std::vector<SetFinding>& sets) {
-  const auto found = std::ranges::find(sets, names_of(set), names_of);
-  if (found != sets.end()) {
-    std::rotate(sets.begin(), found, found + 1);
-  } else {
-    sets.insert(sets.begin(), set);
-  }
 }
 
 }  // namespace

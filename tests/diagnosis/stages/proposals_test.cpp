@@ -72,5 +72,25 @@ TEST(Proposals, AFamilyAloneIsTheBestRunWithoutAnother) {
   EXPECT_EQ(found.runs.alone("creep"), 0.0);  // only beside another
 }
 
+TEST(Proposals, WhatIsInTheDiagramIsToldFirst) {
+  const LawFinding friction{.effect = "coulomb_friction", .edge = "ACC"};
+  const LawFinding resonance{.effect = "resonance", .edge = "ACC"};
+  const LawFinding elsewhere{.effect = "resonance", .edge = "U"};
+  const std::vector<SetFinding> sets{{.laws = {elsewhere}, .probability = 0.5},
+                                     {.laws = {resonance, friction}, .probability = 0.3},
+                                     {.laws = {resonance}, .probability = 0.2}};
+  std::vector<SetFinding> known = sets;
+  put_first({.laws = {friction, resonance}, .probability = 0.9}, known);  // in whatever order
+  ASSERT_EQ(known.size(), 3U);
+  EXPECT_EQ(known[0].probability, 0.3);
+  EXPECT_EQ(known[1].probability, 0.5);
+  EXPECT_EQ(known[2].probability, 0.2);
+  std::vector<SetFinding> part = sets;
+  put_first({.laws = {friction}, .probability = 0.3}, part);
+  ASSERT_EQ(part.size(), 4U);
+  EXPECT_EQ(part[0].laws.size(), 1U);
+  EXPECT_EQ(part[1].probability, 0.5);
+}
+
 }  // namespace
 }  // namespace hysteron::diagnosis

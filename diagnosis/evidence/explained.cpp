@@ -143,33 +143,31 @@ double left_by(const std::vector<FittedSet>& runs) {
 Explained explained(const Task& task, const std::string& top, const SetFinding& set, const Explanation& calibrated,
                     const ExplainOptions& options, Rules& rules) {
   const VectorXd known = known_of(task, set, calibrated);
-  const Beginning bare{.variant = calibrated.variant, .x = known};
-  const auto is_placed = [&](const Beginning& one) {
-    return one.variant.effects.size() > calibrated.variant.effects.size();
-  };
-  bool is_whole = true;  // all laws have a place and their own drivers
-  std::vector<LawFinding> laws = relevant_laws(set, rules);
-  std::erase_if(laws, [&](const LawFinding& law) {
-    Beginning alone = bare;
-    is_whole = add_law(task, top, law, calibrated, options.columns, alone) && is_whole;
-    return !is_placed(alone);
-  });
-  Beginning found = bare;
-  Explained result;
-  for (std::size_t i = 0; i < laws.size(); ++i) {
-    const bool is_last = i + 1 == laws.size();
-    (void)add_law(task, top, laws[i], calibrated, options.columns, found);
-    if (!is_placed(found) || (options.is_open_loop && !is_last)) {
-      continue;
+  Beginning found{.variant = calibrated.variant, .x = known};
+  std::vector<LawFinding> laws;  // that have a place
+  std::vector<Beginning> ways;   // with the first of them, with two, up to all
+  bool is_whole = true;          // all laws have a place and their own drivers
+  for (const LawFinding& law : relevant_laws(set, rules)) {
+    const std::size_t effects = found.variant.effects.size();
+    is_whole = add_law(task, top, law, calibrated, options.columns, found) && is_whole;
+    if (found.variant.effects.size() > effects) {
+      laws.push_back(law);
+      ways.push_back(found);
     }
+  }
+  if (ways.empty()) {
+    return {};
+  }
+  Explained result;
+  for (std::size_t i = options.is_open_loop ? ways.size() - 1 : 0; i < ways.size(); ++i) {
     std::vector<Beginning> starts;
     if (!result.runs.empty()) {
-      starts.push_back(continued(found, result.runs.back().fitted, known.size()));
+      starts.push_back(continued(ways[i], result.runs.back().fitted, known.size()));
     }
-    if (result.runs.empty() || is_last) {
-      starts.push_back(found);
+    if (result.runs.empty() || i + 1 == ways.size()) {
+      starts.push_back(ways[i]);
       if (!options.is_open_loop) {  // there the loop hides which one is nearer
-        starts.push_back(found);
+        starts.push_back(ways[i]);
         starts.back().x.head(known.size()) = calibrated.fit.x.head(known.size());
       }
     }
@@ -178,9 +176,6 @@ Explained explained(const Task& task, const std::string& top, const SetFinding& 
     if (best.fit.cost < left_by(result.runs)) {
       result.runs.push_back({.set = part_of(set, std::span(laws).first(i + 1)), .fitted = std::move(best)});
     }
-  }
-  if (!is_placed(found)) {
-    return {};
   }
   const double relevant = rules[policy::relevant] * (calibrated.fit.cost - options.floor_cost);
   const double left = left_by(result.runs);

@@ -19,8 +19,8 @@ struct FittedSet {
 };
 
 struct Explained {
-  /// With the first law, with two, up to the whole set. None where the text has no place for the laws, or where all
-  /// fits close less than half of what the evidence promises.
+  /// With the first law, with two, up to the whole set, each with less left than the one before. None where the text
+  /// has no place for the laws, or where the last closes less than half of what the evidence promises.
   std::vector<FittedSet> runs{};
   /// The diagram with the set was run and does not do what the set promises, where a run is a fair judge: the promise
   /// was for the outputs, to first order, or the diagram forgets what was before, so that nothing adds up.

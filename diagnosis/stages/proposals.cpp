@@ -59,6 +59,11 @@ std::size_t best_between(const std::vector<double>& votes, std::size_t from, std
       std::max_element(begin + static_cast<std::ptrdiff_t>(from), begin + static_cast<std::ptrdiff_t>(to)) - begin);
 }
 
+double sum_between(const std::vector<double>& votes, std::size_t from, std::size_t to) {
+  const auto begin = votes.begin();
+  return std::accumulate(begin + static_cast<std::ptrdiff_t>(from), begin + static_cast<std::ptrdiff_t>(to), 0.0);
+}
+
 bool holds(const RunSet& set, const std::string& family) {
   return std::ranges::find(set.families, family) != set.families.end();
 }
@@ -68,8 +73,8 @@ double part_of_family(const Runs& runs, const std::string& family, const std::st
   double all = 0.0;
   double own = 0.0;
   for (std::size_t i = 0; i < runs.searched.size(); ++i) {
-    if (holds(runs.sets[runs.told + i], family)) {
-      const double votes = runs.votes[runs.told + i];
+    if (holds(runs.sets[runs.told() + i], family)) {
+      const double votes = runs.votes[runs.told() + i];
       all += votes;
       own += std::ranges::count(runs.searched[i]->variant.effects, effect, &Applied::effect) > 0 ? votes : 0.0;
     }
@@ -116,8 +121,7 @@ std::vector<std::pair<std::string, std::string>> names_of(const SetFinding& set)
 }  // namespace
 
 double Runs::votes_of(std::size_t view) const {
-  return std::accumulate(votes.begin() + static_cast<std::ptrdiff_t>(begins[view]),
-                         votes.begin() + static_cast<std::ptrdiff_t>(begins[view + 1]), 0.0);
+  return sum_between(votes, begins[view], begins[view + 1]);
 }
 
 std::size_t Runs::best_told() const {
@@ -133,13 +137,12 @@ std::size_t Runs::best_set_of(std::size_t view) const {
 }
 
 std::size_t Runs::best_searched() const {
-  return best_between(votes, told, nothing());
+  return best_between(votes, told(), nothing());
 }
 
 bool Runs::are_for_told() const {
-  const double of_search = std::accumulate(votes.begin() + static_cast<std::ptrdiff_t>(told),
-                                           votes.begin() + static_cast<std::ptrdiff_t>(nothing()), 0.0);
-  return told > 0 && votes_of(best_told()) >= std::max(of_search, votes[nothing()]);
+  const double of_search = sum_between(votes, told(), nothing());
+  return told() > 0 && votes_of(best_told()) >= std::max(of_search, votes[nothing()]);
 }
 
 double Runs::alone(const std::string& family) const {
@@ -165,8 +168,7 @@ Runs runs_of(const std::vector<Told>& told, const Judged& judged, const Diagnosi
       result.sets.push_back(unrun(one.evidence, nothing));
     }
   }
-  result.told = result.sets.size();
-  result.begins.push_back(result.told);
+  result.begins.push_back(result.sets.size());
   for (const Explanation* const one : result.searched) {
     const bool is_chosen = one == result.searched.front();
     result.sets.push_back(run_of(*one, is_chosen ? judged.residuals() : one->fit.residuals, result.family_of));
@@ -182,14 +184,14 @@ Runs runs_of(const std::vector<Told>& told, const Judged& judged, const Diagnosi
 Evidence evidence_of_search(const Runs& runs, const Task& task) {
   Evidence result;
   std::vector<std::size_t> order;
-  for (std::size_t i = runs.told; i < runs.nothing(); ++i) {
+  for (std::size_t i = runs.told(); i < runs.nothing(); ++i) {
     if (runs.votes[i] > 0.0) {
       order.push_back(i);
     }
   }
   std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) { return runs.votes[i]; });
   for (const std::size_t i : order) {
-    const Explanation& fitted = *runs.searched[i - runs.told];
+    const Explanation& fitted = *runs.searched[i - runs.told()];
     add_searched(runs, i, fitted, result);
     SetFinding set{.space = "runs", .probability = runs.votes[i], .closed = runs.closed[i]};
     for (const Applied& one : fitted.variant.effects) {
@@ -227,7 +229,7 @@ void weigh_families(const Runs& runs, const std::vector<Told>& told, Evidence& e
         by_record += runs.votes_of(view) * found->by_record;
       }
     }
-    for (std::size_t i = runs.told; i < runs.sets.size(); ++i) {
+    for (std::size_t i = runs.told(); i < runs.sets.size(); ++i) {
       if (holds(runs.sets[i], family.family)) {
         probability += runs.votes[i];
         by_record += runs.votes[i];

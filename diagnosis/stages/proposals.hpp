@@ -30,11 +30,12 @@ struct Runs {
   std::vector<RunSet> sets{};  ///< of what is told, then of the search, and last the calibrated diagram as it is
   std::vector<double> votes{};
   std::vector<double> closed{};
-  std::size_t told = 0;               ///< so many of them
-  std::vector<std::size_t> begins{};  ///< by view that tells something, where its sets begin; then `told`
+  std::vector<std::size_t> begins{};  ///< by view that tells something, where its sets begin; then those of the search
   std::vector<const Explanation*> searched{};
   std::map<std::string, std::string> family_of{};  ///< by effect
 
+  /// How many sets are of what is told.
+  [[nodiscard]] std::size_t told() const { return begins.back(); }
   /// The votes of all sets of what one view tells.
   [[nodiscard]] double votes_of(std::size_t view) const;
   /// The most probable of what is told, as a whole; its most probable set; and that of the search: asked only where

@@ -128,8 +128,8 @@ Judged weighed(Judged judged, const Answer& answer, const DiagnosisOptions& opti
   } else if (!runs.searched.empty()) {
     shown = weighing.views() - 1;
     judged.evidence = evidence_of_search(runs, record.task);
-    if (const std::size_t best = runs.best_searched(); best != runs.told) {  // the first one is chosen already
-      judged.choose(*runs.searched[best - runs.told]);
+    if (const std::size_t best = runs.best_searched(); best != runs.told()) {  // the first one is chosen already
+      judged.choose(*runs.searched[best - runs.told()]);
       judged.unrepeatable.reset();
     }
   } else {

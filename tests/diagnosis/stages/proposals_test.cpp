@@ -11,8 +11,7 @@ namespace {
 /// A view that tells one family for sure, a search with two sets, and no effect at all.
 struct Proposed {
   explicit Proposed(std::vector<double> votes) {
-    runs.told = told.size();
-    runs.begins = {0, 1};
+    runs.begins = {0, told.size()};
     runs.sets = {{.families = {"play"}}, {.families = {"lag"}}, {.families = {"creep", "lag"}}, {}};
     runs.closed = {0.9, 0.6, 0.8, 0.0};
     runs.votes = std::move(votes);
@@ -28,7 +27,6 @@ TEST(Proposals, WhatIsToldIsBelievedWhereItIsMoreProbableThanAllOfTheSearch) {
   EXPECT_TRUE(Proposed({0.5, 0.3, 0.2, 0.0}).runs.are_for_told());
   EXPECT_FALSE(Proposed({0.4, 0.3, 0.3, 0.0}).runs.are_for_told());
   Proposed none({0.0, 0.5, 0.5, 0.0});
-  none.runs.told = 0;
   none.runs.begins = {0};
   EXPECT_FALSE(none.runs.are_for_told());
 }
@@ -47,7 +45,6 @@ TEST(Proposals, TheMostProbableOfEach) {
 TEST(Proposals, TheSetsOfAViewStandForItTogether) {
   Proposed found({0.3, 0.25, 0.35, 0.1});  // two sets of the first view, and one of another
   found.runs.begins = {0, 2, 3};
-  found.runs.told = 3;
   EXPECT_DOUBLE_EQ(found.runs.votes_of(0), 0.55);
   EXPECT_EQ(found.runs.best_told(), 0U);
   EXPECT_EQ(found.runs.best_set_of(0), 0U);

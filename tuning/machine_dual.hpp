@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "codegen/interpreter/machine_lanes.hpp"
+#include "codegen/interpreter/registers.hpp"
 #include "tuning/dual.hpp"
 
 namespace hysteron {
@@ -17,7 +18,7 @@ inline constexpr std::size_t most_derivatives = 7;
 extern template class Machine<Dual<3>>;
 extern template class Machine<Dual<5>>;
 extern template class Machine<Dual<static_cast<int>(most_derivatives)>>;
-using WideDual = Dual<static_cast<int>(most_derivatives), 8>;  ///< for processors of which has_wide_registers()
+using WideDual = Dual<static_cast<int>(most_derivatives), 8>;  ///< for processors of which has_registers_of_eight()
 extern template class Machine<WideDual>;
 
 /// The interpreters of a program, which outlives them: the plain one, and those that carry derivatives, made where
@@ -33,10 +34,10 @@ class Machines {
   template <class Run>
   auto with_derivatives(std::size_t count, Run&& run) {
     const auto with = [&]<class S>(std::optional<Machine<S>>& machine) { return run(made(machine)); };
-    return has_wide_registers() ? with(wide_) : count <= 3 ? with(three_) : count <= 5 ? with(five_) : with(seven_);
+    return has_registers_of_eight() ? with(wide_) : count <= 3 ? with(three_) : count <= 5 ? with(five_) : with(seven_);
   }
 
-  /// The one that runs eight sets of parameters side by side. Only where has_wide_registers() says so, and of a program
+  /// The one that runs eight sets of parameters side by side. Only where has_registers_of_four() says so, and of a program
   /// without an FMU.
   Machine<Lanes>& side_by_side() { return made(lanes_); }
 

@@ -58,8 +58,9 @@ class Rollout {
   /// remember of the states before a restart counts, in the Jacobian, for those after it.
   bool residuals(const Eigen::VectorXd& x, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian);
 
-  /// Whether several points can be run at once: on a processor with wide registers, of a program without an FMU.
-  [[nodiscard]] bool can_run_side_by_side() const { return has_wide_registers() && !reach_.has_fmu(); }
+  /// Whether several points can be run at once: on a processor with registers of 256 bits, of a program
+  /// without an FMU.
+  [[nodiscard]] bool can_run_side_by_side() const { return has_registers_of_four() && !reach_.has_fmu(); }
   /// As residuals() without derivatives, to the bit, for lane_count points at the most at once. A point that has no
   /// value gets no residuals. Only where it can be done.
   [[nodiscard]] std::vector<std::optional<Eigen::VectorXd>> residuals_side_by_side(

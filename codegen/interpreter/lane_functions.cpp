@@ -1,19 +1,9 @@
-// What lanes take one by one, compiled for every processor, and whether this one has wide registers: see lanes.hpp.
+// What lanes take one by one, compiled for every processor: see lanes.hpp.
 #include "blocks/filtered_rate.hpp"
 #include "codegen/interpreter/lanes.hpp"
 #include "codegen/trace/evaluate.hpp"
 
 namespace hysteron {
-
-bool has_wide_registers() {
-#ifdef HYSTERON_WIDE_CODE
-  static const bool all = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                          __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
-  return all;
-#else
-  return false;
-#endif
-}
 
 namespace detail {
 

@@ -1,4 +1,4 @@
-// The blocks over eight lanes, compiled for registers of 512 bits.
+// The blocks over eight lanes, compiled for registers of 256 bits.
 #include "codegen/interpreter/lanes.hpp"
 #include "codegen/interpreter/run_table.hpp"
 

@@ -46,7 +46,7 @@ TEST(WideCode, SharesNoInlineFunctionWithOtherCode) {
     wide_files += is_wide ? 1 : 0;
     (is_wide ? wide : others).merge(inline_functions(object, folder));
   }
-  ASSERT_EQ(wide_files, 2U) << "the sources of hysteron_wide() in CMakeLists.txt";
+  ASSERT_EQ(wide_files, 2U) << "the sources of hysteron_registers() in CMakeLists.txt";
   ASSERT_GT(wide.size(), 100U);
   ASSERT_GT(others.size(), 1000U);
   std::vector<std::string> shared;

@@ -257,7 +257,7 @@ TEST(Rollout, WhoAsksOnceMoreGetsTheSame) {
 }
 
 TEST(Rollout, WideRegistersChangeNoDerivative) {
-  if (!has_wide_registers()) {
+  if (!has_registers_of_eight()) {
     GTEST_SKIP() << "this processor has no registers of 512 bits";
   }
   const OutputErrorProblem problem = problem_of_chain(parameters_of_chain());

@@ -57,6 +57,7 @@ table { border-collapse: collapse; margin: .4rem 0; font-variant-numeric: tabula
 article table { width: 100%; }
 article th, article td { padding-right: .5rem; }
 @media (max-width: 700px) { table, article table { display: block; overflow-x: auto; } }
+@media (max-width: 700px), print { pre { white-space: pre-wrap; overflow-wrap: anywhere; } }
 th, td { padding: .22rem .9rem .22rem 0; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { font-weight: 500; font-size: .87rem; color: var(--soft); }
 .number { text-align: right; white-space: nowrap; }

@@ -1,4 +1,5 @@
 #include "records/csv.hpp"
+#include "records/text/csv_line.hpp"
 #include "support/atomic_file.hpp"
 #include "support/numbers.hpp"
 
@@ -7,7 +8,10 @@ namespace {
 
 /// A header cell; in quotes where a separator, a comment mark or a blank at its ends would be taken for something else.
 std::string header_cell(const Column& column) {
-  const std::string text = column.unit.empty() ? column.name : column.name + " [" + column.unit + "]";
+  // Empty brackets say that what ends the name is no unit: "level mV".
+  const HeaderName read = split_header(column.name);
+  const bool clear = read.name == column.name && read.unit.empty();
+  const std::string text = column.unit.empty() && clear ? column.name : column.name + " [" + column.unit + "]";
   const bool plain = text.find_first_of(",;\t\"#") == std::string::npos;
   return plain ? text : '"' + text + '"';
 }

@@ -21,8 +21,34 @@ bool begins(std::string_view bytes, std::string_view with, std::size_t at = 0) {
 
 constexpr std::string_view hdf5_mark = "\x89HDF\r\n\x1A\n";
 
+/// Version 4 has no mark: its head is five small whole numbers of 32 bits. Text has no byte of zero.
+bool is_mat4(std::string_view bytes, std::string_view ending) {
+  return ending == "mat" && bytes.size() > 20 && bytes.substr(0, 20).find('\0') != std::string_view::npos;
+}
+
+/// `rig,host=a u=0.3,y=1.05 1717408800000000000`
+bool is_line_protocol(std::string_view line) {
+  line = line.substr(0, line.find('\r'));
+  const auto fields = line.find(' ');
+  const auto time = line.rfind(' ');
+  constexpr std::string_view digits = "0123456789";
+  return time != std::string_view::npos && fields < time && line.size() - time > 10 &&
+         line.find_first_not_of(digits, time + 1) == std::string_view::npos &&
+         line.substr(fields, time - fields).find('=') != std::string_view::npos &&
+         digits.find(line.front()) == std::string_view::npos &&
+         line.substr(fields + 1, time - fields - 1).find(' ') == std::string_view::npos;
+}
+
+/// `(1717408800.001000) can0 100#0011223344556677`
+bool is_candump(std::string_view line) {
+  const auto close = line.find(") ");
+  const auto mark = line.find('#');
+  return line.starts_with('(') && close != std::string_view::npos && mark != std::string_view::npos && close < mark &&
+         line.substr(close + 2, mark - close).find("can") != std::string_view::npos;
+}
+
 constexpr auto formats = std::to_array<Format>({
-    {"MATLAB", [](std::string_view bytes, std::string_view) { return begins(bytes, "MATLAB 7.3 MAT-file") || begins(bytes, "MATLAB 5.0 MAT-file"); },
+    {"MATLAB", [](std::string_view bytes, std::string_view ending) { return begins(bytes, "MATLAB 7.3 MAT-file") || begins(bytes, "MATLAB 5.0 MAT-file") || is_mat4(bytes, ending); },
      read_mat, ""},
     {"HDF5", [](std::string_view bytes, std::string_view ending) {
        // What a user puts before it takes 512 bytes, or twice, four times … as many.
@@ -111,6 +137,35 @@ constexpr auto formats = std::to_array<Format>({
        return first != std::string_view::npos && (bytes[first] == '{' || (bytes[first] == '[' && ending == "json"));
      },
      nullptr, from_python},
+    {"Octave text with several variables",
+     [](std::string_view bytes, std::string_view) {
+       const auto first = begins(bytes, "# Created by Octave") ? bytes.find("# name:") : std::string_view::npos;
+       return first != std::string_view::npos && bytes.find("# name:", first + 1) != std::string_view::npos;
+     },
+     nullptr, "save it as a MAT-file: in Octave, save(\"-v7\", \"log.mat\", \"t\", \"u\", \"y\")."},
+    {"line protocol of InfluxDB", [](std::string_view bytes, std::string_view) { return is_line_protocol(bytes.substr(0, bytes.find('\n'))); },
+     nullptr, "export the signals as CSV: influx query --raw, or the CSV of Grafana or of the data explorer."},
+    {"VCD, the value changes of a simulation",
+     [](std::string_view bytes, std::string_view ending) {
+       return ending == "vcd" || (begins(bytes, "$") && bytes.substr(0, 4000).find("$enddefinitions") != std::string_view::npos);
+     },
+     nullptr, "export the signals as CSV at even times in the program that shows them."},
+    {"UFF, a universal file",
+     [](std::string_view bytes, std::string_view ending) {
+       return ending == "unv" || ending == "uff" || begins(bytes, "    -1\n") || begins(bytes, "    -1\r\n");
+     },
+     nullptr, "export the channels as CSV in the program that wrote it; or, in Python, by pyuff."},
+    {"COMTRADE", [](std::string_view bytes, std::string_view ending) { return ending == "cff" || begins(bytes, "--- file type: CFG"); },
+     nullptr, "export the channels as CSV; or, in Python, by the package comtrade: its numbers need the scales of the configuration."},
+    {"a log of CAN frames",
+     [](std::string_view bytes, std::string_view ending) {
+       const auto first = bytes.substr(0, 400);
+       return ending == "trc" || begins(bytes, ";$FILEVERSION") ||
+              (begins(bytes, "date ") && first.find("\nbase ") != std::string_view::npos) ||
+              is_candump(bytes.substr(0, bytes.find('\n')));
+     },
+     nullptr,
+     "decode its signals with their DBC file, and export them as CSV: in CANalyzer or PCAN-View, or by cantools or asammdf in Python."},
     {"XML", [](std::string_view bytes, std::string_view) { return begins(bytes, "<?xml") || begins(bytes, "\xEF\xBB\xBF<?xml"); }, nullptr,
      "export the record as CSV."},
     {"text", [](std::string_view, std::string_view) { return true; }, read_text, ""},

@@ -22,6 +22,7 @@
 #include "records/time/time_grid.hpp"
 #include "records/time/time_unit.hpp"
 #include "records/uneven_record.hpp"
+#include "support/counted.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -197,6 +198,15 @@ std::optional<Diagnostic> fault_of(const Table& table, std::size_t index) {
   return std::nullopt;
 }
 
+std::string said_of_mark(const std::string& column, const MarkOfMissing& mark, std::size_t first_row) {
+  const std::size_t row = mark.first + first_row;
+  return fmt::format(
+      "column {} holds {} in {}, where its other numbers go from {} to {}: if that means no value, leave it "
+      "out, as --rows {}",
+      column, number_text(mark.value), counted(mark.rows, "row"), rounded_text(mark.low), rounded_text(mark.high),
+      row > 2 ? fmt::format("1..{}", row - 1) : fmt::format("{}..", row + 1));
+}
+
 struct Grid {
   std::vector<double> seconds{};
   double sample_time = 0.0;
@@ -306,6 +316,9 @@ Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven
       column.name += fmt::format(" ({})", i + 1);  // t is the time; this is a temperature or a torque
     }
     std::vector<double> values = std::move(column.values);
+    if (const auto mark = mark_of_missing(values)) {
+      table.notes.push_back(said_of_mark(column.name, *mark, options.first_row));
+    }
     double step = 0.0;
     if (resample) {
       const auto own = std::ranges::find(times.own, i, &Times::Own::column);

@@ -37,6 +37,34 @@ ColumnStatistics statistics_of(std::span<const double> values) {
   return result;
 }
 
+std::optional<MarkOfMissing> mark_of_missing(std::span<const double> values) {
+  // Of Campbell, GIS and weather loggers, of Java and C, of registers of 16 and 32 bits without a value, of netCDF.
+  constexpr auto marks =
+      std::to_array({999.0, 6999.0, 7999.0, 8999.0, 9999.0, 99999.0, 999999.0, 9999999.0, 999.9, 9999.9, 999.99,
+                     32767.0, 32768.0, 65535.0, 2147483647.0, 2147483648.0, 4294967295.0});
+  constexpr double beyond_sensors = 1e30;
+  MarkOfMissing result{.low = std::numeric_limits<double>::infinity(),
+                       .high = -std::numeric_limits<double>::infinity()};
+  const auto is_mark = [&](double value) {
+    return std::abs(value) > beyond_sensors || std::ranges::find(marks, std::abs(value)) != marks.end();
+  };
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (is_mark(values[k])) {
+      result.first = result.rows == 0 ? k : result.first;
+      result.value = result.rows == 0 ? values[k] : result.value;
+      ++result.rows;
+    } else {
+      result.low = std::min(result.low, values[k]);
+      result.high = std::max(result.high, values[k]);
+    }
+  }
+  constexpr double far = 2.0;  // ranges of the others
+  const double range = result.high - result.low;
+  const double away = std::max(result.low - result.value, result.value - result.high);
+  return result.rows > 0 && 2 * result.rows < values.size() && away > far * range ? std::optional(result)
+                                                                                  : std::nullopt;
+}
+
 double loop_width(std::span<const double> u, std::span<const double> y) {
   constexpr std::size_t bins = 40;
   constexpr double least_samples = 3.0;

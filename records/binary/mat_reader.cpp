@@ -210,6 +210,12 @@ Table read_mat(const std::string& file, std::string bytes, const ReadOptions& op
       break;
     }
     const std::string name = variable->name != nullptr ? variable->name : "";
+    if (name == "dataInfo") {
+      throw InputError(error::unread_format, {.file = file},
+                       "The file is a result of Modelica: a table of names beside two tables of numbers.",
+                       "write the result as CSV: in OpenModelica, simulate(MODEL, outputFormat=\"csv\"); in Dymola, "
+                       "export the signals from the plot.");
+    }
     if (is_too_large(*variable)) {
       variables.list().refuse_size(name);
       continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -77,8 +78,14 @@ CellValue as_number(std::string_view text) {
   std::ranges::transform(text, buffer.begin(), [](char c) { return c == ',' ? '.' : c == 'D' || c == 'd' ? 'e' : c; });
   const std::string_view plain(buffer.data(), text.size());
   const ParsedNumber number = parse_number(plain);
+  // Instruments say "overload" and "no value" so (SCPI 1999, 7.2.1.4).
+  const double size = std::abs(number.value);
   switch (number.status) {
     case NumberStatus::Finite:
+      if (size == 9.9e37 || size == 9.91e37) {
+        value.kind = CellKind::NotFinite;
+        return value;
+      }
       value.kind = CellKind::Number;
       value.number = number.value;
       value.stamp = stamp_of(plain, number.value);
@@ -155,13 +162,15 @@ CellValue cell_value(std::string_view text) {
     text = behind_arrival(text);
     length = number_length(text);
   }
-  constexpr std::string_view minus = "\xE2\x88\x92";  // the sign of typography
-  if (text.starts_with(minus) && number_length(text.substr(minus.size())) == text.size() - minus.size() &&
-      is_digit(text[minus.size()])) {
-    value = as_number(text.substr(minus.size()));
-    value.number = -value.number;
-    value.stamp = {-value.stamp.whole, -value.stamp.fraction};
-    return value;
+  // The minus of typography, and the dashes that word processors and spreadsheets put in its place.
+  for (const std::string_view minus : {"\xE2\x88\x92", "\xE2\x80\x93", "\xE2\x80\x90", "\xE2\x80\x91"}) {
+    if (text.starts_with(minus) && text.size() > minus.size() && is_digit(text[minus.size()]) &&
+        number_length(text.substr(minus.size())) == text.size() - minus.size()) {
+      value = as_number(text.substr(minus.size()));
+      value.number = -value.number;
+      value.stamp = {-value.stamp.whole, -value.stamp.fraction};
+      return value;
+    }
   }
   if (length == text.size()) {
     value = as_number(text);

@@ -1,5 +1,9 @@
 #include "records/text/channel_head.hpp"
 
+#include <utility>
+
+#include "records/text/scale_row.hpp"
+#include "records/text/unit_text.hpp"
 #include "support/names.hpp"
 
 namespace hysteron::records {
@@ -25,17 +29,26 @@ std::optional<ChannelHead> channel_head(const std::vector<Line>& head, std::size
       continue;
     }
     if (equal_ignoring_case(key, "Name")) {
-      result.names.clear();
+      result.channels.clear();
       for (std::size_t c = 1; c < cells; c += 2) {
-        result.names.emplace_back(line[c].text);
+        result.channels.push_back({.name = std::string(line[c].text)});
       }
     } else if (const auto [name, unit] = split_header(key); equal_ignoring_case(name, "SampleTime")) {
       result.time_unit = unit;
     }
+    for (std::size_t channel = 0; channel < result.channels.size(); ++channel) {
+      ChannelHead::Channel& one = result.channels[channel];
+      const std::string_view said = line[2 * channel + 1].text;
+      if (is_key_of_units(key)) {
+        one.unit = unit_of_word(said);
+      } else if (auto note = note_of_scale(key, said, one.name)) {
+        result.notes.push_back(std::move(*note));
+      }
+    }
   }
   // Of one channel, no key stands twice: a line "Name u" alone may be anything.
   const bool sure = cells > 2 || !result.time_unit.empty();
-  return sure && !result.names.empty() ? std::optional(std::move(result)) : std::nullopt;
+  return sure && !result.channels.empty() ? std::optional(std::move(result)) : std::nullopt;
 }
 
 }  // namespace hysteron::records

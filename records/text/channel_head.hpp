@@ -4,6 +4,7 @@
 //   Name            u       Name            y
 //   SampleTime[ms]  1       SampleTime[ms]  1
 //   SymbolName      MAIN.u  SymbolName      MAIN.y
+//   Unit            mV      Unit            um
 //
 //   0               0,0000  0               0,0000
 #pragma once
@@ -17,8 +18,13 @@
 namespace hysteron::records {
 
 struct ChannelHead {
-  std::vector<std::string> names{};  ///< by channel
+  struct Channel {
+    std::string name{};
+    std::string unit{};
+  };
+  std::vector<Channel> channels{};
   std::string time_unit{};           ///< as SampleTime[ms] states it; empty where nothing does
+  std::vector<std::string> notes{};  ///< what the head states and is left aside
 };
 
 /// Reads the lines of a head, of which rows have `cells` cells; nothing where it is none of these.

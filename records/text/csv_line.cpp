@@ -60,8 +60,10 @@ void cut_line(std::string_view line, char separator, std::vector<Cell>& cells) {
   while (true) {
     const std::size_t end = end_of_cell(line, begin, separator);
     auto text = trimmed(line.substr(begin, end - begin));
-    if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
-      text = trimmed(text.substr(1, text.size() - 2));
+    for (const char quote : {'"', '\''}) {
+      if (text.size() >= 2 && text.front() == quote && text.back() == quote) {
+        text = trimmed(text.substr(1, text.size() - 2));
+      }
     }
     const std::size_t offset = text.empty() ? begin : static_cast<std::size_t>(text.data() - line.data());
     cells.push_back({.text = text, .offset = offset});
@@ -96,15 +98,23 @@ bool is_name_of_circuit(std::string_view name, std::string_view inner) {
          (current && !(is_known_unit(inner) && inner.ends_with('A')));
 }
 
-/// The unit that ends a name, u_mV. Of one letter it would be a part of the name, and an angle may stand for a speed.
+/// mV, and millivolts.
+bool is_unit_word(std::string_view text) {
+  return is_known_unit(text) || (!text.empty() && unit_of_word(text) != text);
+}
+
+/// Of one letter a unit would be a part of the name, and an angle may stand for a speed.
+bool is_clear_unit(std::string_view unit) {
+  return unit.size() >= 2 && is_unit_word(unit) && !is_one_of(unit, {"deg", "rad", "inc", "pu", "cd", "min", "sec"}) &&
+         unit.find_first_of("0123456789[](){}<>") == std::string_view::npos && !time_unit(unit);
+}
+
+/// The unit that ends a name, u_mV and u.mV.
 std::string_view unit_of_suffix(std::string_view cell) {
-  const auto joint = cell.rfind('_');
+  const auto joint = cell.find_last_of("_.");
   const std::string_view unit =
       joint == std::string_view::npos || joint == 0 ? std::string_view() : cell.substr(joint + 1);
-  const bool clear = unit.size() >= 2 && is_known_unit(unit) &&
-                     !is_one_of(unit, {"deg", "rad", "inc", "pu", "cd", "min", "sec"}) &&
-                     unit.find_first_of("0123456789") == std::string_view::npos && !time_unit(unit);
-  return clear ? unit : std::string_view();
+  return is_clear_unit(unit) ? unit : std::string_view();
 }
 
 }  // namespace
@@ -132,7 +142,24 @@ HeaderName split_header(std::string_view cell) {
   // u/mV, "u in mV" and "u, mV": a unit only where it is one.
   for (const std::string_view joint : {" in ", ", ", "/"}) {
     if (const auto at = cell.rfind(joint); at != std::string_view::npos && at > 0 && cell.find('/') >= at &&
-                                           !time_name(cell) && is_known_unit(cell.substr(at + joint.size()))) {
+                                           !time_name(cell) && is_unit_word(cell.substr(at + joint.size()))) {
+      return with(at, at + joint.size(), std::string_view::npos);
+    }
+  }
+  // u {mV}, u <mV>, u: mV, u - mV and u mV: a unit only where it is one, and no angle, which may stand for a speed.
+  for (const std::string_view brackets : {"{}", "<>"}) {
+    const auto open = cell.ends_with(brackets[1]) ? cell.rfind(brackets[0]) : std::string_view::npos;
+    if (open != std::string_view::npos && open > 0 && is_unit_word(cell.substr(open + 1, cell.size() - open - 2))) {
+      return with(open, open + 1, cell.size() - open - 2);
+    }
+  }
+  for (const std::string_view joint : {" - ", ":", " "}) {
+    const auto at = cell.rfind(joint);
+    if (at == std::string_view::npos || at == 0) {
+      continue;
+    }
+    const std::string_view unit = trimmed(cell.substr(at + joint.size()));
+    if (is_clear_unit(unit) || (time_name(trimmed(cell.substr(0, at))) && time_unit(unit))) {
       return with(at, at + joint.size(), std::string_view::npos);
     }
   }

@@ -25,8 +25,9 @@ struct HeaderName {
   std::string unit{};
 };
 
-/// `u [V]`, `u (V)`, `u / V`, `u/V`, `u in V` and `u, V` as name `u` and unit `V`; `y[2] [V]` as the element `y[2]` in
-/// V. `u_mV` keeps its name, and its unit is mV. `V(u)` is a name of circuit simulators.
+/// `u [V]`, `u (V)`, `u {V}`, `u <V>`, `u / V`, `u/V`, `u in V`, `u, V`, and of units of more than one letter `u: mV`,
+/// `u - mV` and `u mV` as name `u` and its unit; `y[2] [V]` as the element `y[2]` in V. `u_mV` and `u.mV` keep their
+/// names, and their unit is mV. `V(u)` is a name of circuit simulators.
 [[nodiscard]] HeaderName split_header(std::string_view cell);
 
 }  // namespace hysteron::records

@@ -17,6 +17,8 @@
 namespace hysteron::records {
 namespace {
 
+using namespace std::string_literals;
+
 void append_utf8(std::string& text, std::uint32_t code) {
   if (code < 0x80) {
     text += static_cast<char>(code);
@@ -171,7 +173,14 @@ DecodedText decoded_bytes(const std::string& file, std::string bytes) {
 }  // namespace
 
 DecodedText decoded(const std::string& file, std::string bytes) {
+  // Loggers lay a file out beforehand: what they have not written are zeros, or the ones of an empty flash memory.
+  const auto written = bytes.find_last_not_of("\0\xFF"s);
+  const std::size_t empty = written == std::string::npos ? 0 : bytes.size() - written - 1;
+  if (empty > 2) {
+    bytes.resize(written + 1);
+  }
   DecodedText result = decoded_bytes(file, std::move(bytes));
+  result.empty_bytes = empty > 2 ? empty : 0;
   settle_line_ends(result.text);
   return result;
 }

@@ -11,6 +11,8 @@
 #include "records/text/cell_value.hpp"
 #include "records/text/channel_head.hpp"
 #include "records/text/names_above.hpp"
+#include "records/text/row_block.hpp"
+#include "records/text/scale_row.hpp"
 #include "records/text/unit_text.hpp"
 #include "records/time/time_unit.hpp"
 #include "support/errors.hpp"
@@ -31,106 +33,47 @@ bool is_rule(std::string_view line) {
   return line.find("---") != std::string_view::npos && line.find_first_not_of("-|+=: \t\r") == std::string_view::npos;
 }
 
-/// A run of lines of the same shape.
-struct Block {
-  std::size_t first = 0;  ///< its line in the head
-  std::size_t rows = 0;
-  std::vector<bool> values{};  ///< by cell: whether the first line has a value there
-  [[nodiscard]] std::size_t score() const { return rows * static_cast<std::size_t>(std::ranges::count(values, true)); }
-  /// As many cells, and at least half of the values: a cell that is faulty ends no table. A line that begins with a
-  /// word ends before those that begin with a number: "Sample Interval,0.001,0.001" is no row.
-  [[nodiscard]] bool goes_on_with(const std::vector<bool>& next) const {
-    if (rows == 0 || next.size() != values.size() || (next.front() && !values.front())) {
-      return false;
-    }
-    std::size_t kept = 0;
-    std::size_t had = 0;
-    for (std::size_t c = 0; c < values.size(); ++c) {
-      had += values[c] ? 1 : 0;
-      kept += values[c] && next[c] ? 1 : 0;
-    }
-    return 2 * kept >= had && kept > 0;
-  }
-};
-
-/// Which cells hold a value. Between blanks, 0.35,1.05 is two of them.
-std::vector<bool> values_of(const std::vector<Cell>& cells, char separator) {
-  std::vector<bool> values;
-  values.reserve(cells.size());
-  for (const Cell& cell : cells) {
-    const CellKind kind = cell_value(cell.text).kind;
-    values.push_back(is_value(kind) && !(separator == ' ' && kind == CellKind::TwoMarks));
-  }
-  return values;
+/// `XOrg:,0.0` and `YUnits:,Volt`: one of two cells, of which the first ends with a colon, is no name of a column.
+bool is_setting(const std::vector<Cell>& cells) {
+  return cells.size() <= 2 && cells.front().text.ends_with(':');
 }
 
-Block longest_block(const std::vector<Line>& head, char separator) {
-  Block best;
-  Block now;
-  std::vector<Cell> cells;
-  for (std::size_t i = 0; i < head.size(); ++i) {
-    if (is_blank(head[i].text, separator) || is_comment(head[i].text, separator)) {
-      continue;
-    }
-    cut_line(head[i].text, separator, cells);
-    std::vector<bool> values = values_of(cells, separator);
-    if (now.goes_on_with(values)) {
-      ++now.rows;
-    } else {
-      best = now.score() > best.score() ? now : best;
-      const bool any = std::ranges::find(values, true) != values.end();
-      now = any ? Block{.first = i, .rows = 1, .values = std::move(values)} : Block{};
+/// Without what cannot be seen in it: the line ends of a name over several lines, blanks of other widths, and the
+/// quotes of TIA Portal, "DB".u.
+std::string plain_name(std::string_view cell) {
+  std::string text(cell);
+  std::ranges::replace(text, '\v', ' ');
+  for (const std::string_view unseen : {"\xC2\xA0", "\xE2\x80\x8B", "\xEF\xBB\xBF"}) {
+    for (std::size_t at = 0; (at = text.find(unseen, at)) != std::string::npos;) {
+      text.replace(at, unseen.size(), unseen.size() == 2 ? " " : "");
     }
   }
-  return now.score() > best.score() ? now : best;
-}
-
-/// Whether the nearest line above a block that is neither blank nor a remark has words in as many cells.
-bool has_names_above(const std::vector<Line>& head, const Block& block, char separator) {
-  std::vector<Cell> cells;
-  for (std::size_t i = block.first; block.rows > 0 && block.values.size() > 1 && i > 0;) {
-    const std::string_view line = head[--i].text;
-    if (!is_blank(line, separator) && !is_comment(line, separator)) {
-      cut_line(line, separator, cells);
-      return cells.size() == block.values.size() && begins_with_text(cells);
-    }
+  if (std::ranges::count(text, '"') % 2 == 0) {
+    std::erase(text, '"');
   }
-  return false;
-}
-
-/// Rows of the same shape above the longest run are rows too: what parts them is reported, not passed over.
-void take_earlier_rows(const std::vector<Line>& head, char separator, Block& block) {
-  std::vector<Cell> cells;
-  for (std::size_t i = 0; i < block.first; ++i) {
-    if (is_blank(head[i].text, separator) || is_comment(head[i].text, separator)) {
-      continue;
-    }
-    cut_line(head[i].text, separator, cells);
-    const std::vector<bool> values = values_of(cells, separator);
-    if (!values.empty() && values.front() == block.values.front() && block.goes_on_with(values)) {
-      block.first = i;
-      return;
-    }
-  }
+  return std::string(trimmed(text));
 }
 
 /// Looks for names above the rows.
 class HeadReader {
  public:
-  HeadReader(const SourceText& source, const std::vector<Line>& head, const Block& block, TextLayout& layout)
+  HeadReader(const SourceText& source, const std::vector<Line>& head, const RowBlock& block, TextLayout& layout)
       : source_(source), head_(head), cells_in_row_(block.values.size()), layout_(layout), first_row_(block.first) {}
 
   void read() {
     layout_.stated = stated_rate(head_, first_row_);
     if (const auto channels = channel_head(head_, first_row_, cells_in_row_, layout_.separator)) {
-      for (const std::string& name : channels->names) {
+      for (const ChannelHead::Channel& channel : channels->channels) {
         layout_.columns.push_back({.name = "t", .unit = channels->time_unit});
-        layout_.columns.push_back({.name = name});
+        layout_.columns.push_back({.name = channel.name, .unit = channel.unit});
       }
+      layout_.notes.insert(layout_.notes.end(), channels->notes.begin(), channels->notes.end());
       return;
     }
     take_row_with_remark();
-    const std::vector<HeadLine> above = lines_above(head_, first_row_, layout_.separator);
+    std::vector<HeadLine> above = lines_above(head_, first_row_, layout_.separator);
+    const std::vector<HeadLine> scales = take_scales(above);
+    pass_over_marks(above);
     if (above.empty()) {
       refuse_transposed();
       take_names_of_comment();
@@ -144,10 +87,13 @@ class HeadReader {
       take_labels(above[1].line);
       return;
     }
-    const auto words = static_cast<std::size_t>(
-        std::ranges::find_if_not(above,
-                                 [&](const HeadLine& one) { return fits(one.cells) && begins_with_text(one.cells); }) -
-        above.begin());
+    const auto words = static_cast<std::size_t>(std::ranges::find_if_not(above,
+                                                                         [&](const HeadLine& one) {
+                                                                           return fits(one.cells) &&
+                                                                                  begins_with_text(one.cells) &&
+                                                                                  !is_setting(one.cells);
+                                                                         }) -
+                                                above.begin());
     if (words == 0) {
       refuse_transposed();
       refuse_rows_of_another_shape(above.front().cells, above.front().line);
@@ -164,6 +110,11 @@ class HeadReader {
       }
     }
     take_labels(above[names].line);
+    for (const HeadLine& one : scales) {
+      if (one.line > above[names].line) {  // those above the names are among the labels
+        tell_scales(one.cells);
+      }
+    }
   }
 
  private:
@@ -172,6 +123,52 @@ class HeadReader {
     const std::size_t n = cells.size();
     return n == cells_in_row_ || n + 1 == cells_in_row_ ||
            (n == cells_in_row_ + 1 && is_one_of(cells.back().text, {"", "comment"}));
+  }
+
+  /// Takes rows of factors out of the head: `Scale;1;0.001` holds no names.
+  [[nodiscard]] static std::vector<HeadLine> take_scales(std::vector<HeadLine>& above) {
+    std::vector<HeadLine> scales;
+    std::erase_if(above, [&](const HeadLine& one) {
+      const bool found =
+          is_key_of_scale(one.cells.front().text) &&
+          std::ranges::any_of(one.cells, [](const Cell& cell) { return is_value(cell_value(cell.text).kind); });
+      if (found) {
+        scales.push_back(one);
+      }
+      return found;
+    });
+    return scales;
+  }
+
+  /// Factors by column, which are left aside.
+  void tell_scales(const std::vector<Cell>& cells) {
+    for (std::size_t c = 1; c < std::min(cells.size(), cells_in_row_); ++c) {
+      if (auto note = note_of_scale(cells.front().text, cells[c].text, layout_.columns[c].name)) {
+        layout_.notes.push_back(std::move(*note));
+      }
+    }
+  }
+
+  /// Marks of sections, [data] say, stand between the names and the rows; so does the name of a
+  /// run of LTspice. A line of names between other separators than the rows have is cut at its own.
+  void pass_over_marks(std::vector<HeadLine>& above) const {
+    const auto is_names = [&](const std::vector<Cell>& cells) {
+      return cells.size() == cells_in_row_ && begins_with_text(cells) && !is_setting(cells);
+    };
+    const auto names = std::ranges::find_if(above, [&](const HeadLine& one) { return is_names(one.cells); });
+    const bool marks_alone = std::all_of(
+        above.begin(), names, [](const HeadLine& one) { return one.cells.size() == 1 && begins_with_text(one.cells); });
+    if (names != above.end() && names != above.begin() && marks_alone) {
+      above.erase(above.begin(), names);
+    } else if (!above.empty() && above.front().cells.size() == 1 && cells_in_row_ > 1) {
+      std::vector<Cell> cells;
+      for (const char other : {',', ';', '\t'}) {
+        cut_line(head_[above.front().line].text, other, cells);
+        if (other != layout_.separator && is_names(cells)) {
+          above.front().cells = cells;
+        }
+      }
+    }
   }
 
   /// LabVIEW puts a remark behind some rows: `0.000 0.1 0.3 begin` below a head that ends with Comment.
@@ -192,9 +189,10 @@ class HeadReader {
   /// A row right above the rows that has other cells is no head: to pass over it would lose a sample, or its names.
   void refuse_rows_of_another_shape(const std::vector<Cell>& cells, std::size_t line) const {
     const bool is_row = !begins_with_text(cells);
-    const bool is_names = !is_row && cells.size() > 1 && std::ranges::none_of(cells, [](const Cell& cell) {
-      return cell.text.empty() || is_value(cell_value(cell.text).kind);
-    });
+    const bool is_names =
+        !is_row && cells.size() > 1 && !is_setting(cells) && std::ranges::none_of(cells, [](const Cell& cell) {
+          return cell.text.empty() || is_value(cell_value(cell.text).kind);
+        });
     if (!is_row && !is_names) {
       return;
     }
@@ -240,9 +238,7 @@ class HeadReader {
     const std::size_t shift =
         cells.size() + 1 == cells_in_row_ && !ends_empty() ? shift_by_number(line, cells.size()) : 0;
     for (std::size_t c = 0; c < std::min(cells.size(), cells_in_row_); ++c) {
-      std::string text(cells[c].text);
-      std::ranges::replace(text, '\v', ' ');  // a name over several lines
-      HeaderName found = split_header(trimmed(text));
+      HeaderName found = split_header(plain_name(cells[c].text));
       layout_.columns[c + shift] = {.name = std::move(found.name), .unit = unit_of_word(found.unit), .cell = c};
     }
   }
@@ -306,6 +302,23 @@ class HeadReader {
     }
   }
 
+  /// `s,mV,um` above the names: units in all cells, that of the time or one that no name has.
+  [[nodiscard]] bool are_units(const std::vector<Cell>& cells) const {
+    bool sure = false;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      const std::string unit = unit_of_word(cells[c].text);
+      if (unit.empty() || unit == "-" || (c == 0 && is_key_of_units(unit))) {
+        continue;
+      }
+      const bool of_time = time_name(layout_.columns[c].name) && time_unit(unit);
+      if (!of_time && !is_known_unit(unit)) {
+        return false;
+      }
+      sure = sure || of_time || unit.size() > 1;
+    }
+    return sure;
+  }
+
   /// What the head says of the columns elsewhere: names that the user gave to channels, and units, in the order of the
   /// columns; where each channel has times of its own, in the order of the channels.
   void take_labels(std::size_t line) {
@@ -315,7 +328,9 @@ class HeadReader {
         channels.push_back(c);
       }
     }
-    const bool own_times = channels.size() + 1 < cells_in_row_;
+    const auto times = std::ranges::count_if(
+        layout_.columns, [](const TextLayout::Name& one) { return time_name(one.name).has_value(); });
+    const bool own_times = channels.size() + 1 < cells_in_row_ && times > 1;
     std::vector<Cell> cells;
     while (line > 0) {
       const std::string_view text = head_[--line].text;
@@ -325,8 +340,13 @@ class HeadReader {
       cut_line(text, layout_.separator, cells);
       const bool labels = is_one_of(cells.front().text,
                                     {"label", "labels", "channel name", "channel names", "tracename", "trace name"});
-      const bool units = is_one_of(cells.front().text, {"vertical units", "y_unit_label", "vunit"}) ||
-                         is_key_of_units(cells.front().text);
+      const bool all = cells.size() == cells_in_row_ && are_units(cells);
+      const bool keyed = is_key_of_units(cells.front().text);
+      const bool units = is_one_of(cells.front().text, {"vertical units", "y_unit_label", "vunit"}) || keyed || all;
+      if ((keyed || all) && cells.size() == cells_in_row_ && !own_times) {  // one for each column, the time among them
+        take_units(cells);
+        continue;
+      }
       for (std::size_t k = 0; (labels || units) && k < channels.size(); ++k) {
         TextLayout::Name& column = layout_.columns[channels[k]];
         const std::size_t cell = own_times ? k + 1 : channels[k];
@@ -337,6 +357,9 @@ class HeadReader {
         } else if (units && column.unit.empty()) {
           column.unit = unit_of_word(said);
         }
+      }
+      if (cells.size() == cells_in_row_ && !own_times) {
+        tell_scales(cells);
       }
     }
   }
@@ -388,13 +411,13 @@ TextLayout layout_of(const SourceText& source, std::size_t skip) {
     head.push_back(line);
   }
   TextLayout layout;
-  Block best;
+  RowBlock best;
   std::size_t most = 0;
   for (const char separator : separators) {
     if (stated && separator != *stated) {
       continue;
     }
-    Block found = longest_block(head, separator);
+    RowBlock found = longest_block(head, separator);
     // Names of as many cells are worth as much as the rows: `0,1` below `t,u` is no decimal comma.
     const std::size_t score = found.score() * (has_names_above(head, found, separator) ? 2 : 1);
     if (score > most) {

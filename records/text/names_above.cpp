@@ -45,7 +45,8 @@ std::vector<HeadLine> lines_above(const std::vector<Line>& head, std::size_t fir
   std::vector<HeadLine> result;
   for (std::size_t i = first_row; i > 0 && result.size() < most_lines;) {
     const std::string_view text = head[--i].text;
-    if (!is_blank(text, separator) && !is_comment(text, separator)) {
+    const bool is_of_ignition = i > 0 && is_one_of(head[i - 1].text, {"#TYPES", "#ROWS"});
+    if (!is_blank(text, separator) && !is_comment(text, separator) && !is_of_ignition) {
       result.push_back({.line = i});
       cut_line(text, separator, result.back().cells);
     }

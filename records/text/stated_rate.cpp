@@ -19,25 +19,15 @@ struct Key {
   bool is_of_rows = false;
 };
 /// The longest first, since the first that fits is taken.
-constexpr auto keys = std::to_array<Key>({{"sampling frequency", true},
-                                          {"sample frequency", true},
-                                          {"abtastfrequenz", true},
-                                          {"sampling rate", true},
-                                          {"sample rate", true},
-                                          {"sample_rate", true},
-                                          {"samplerate", true},
-                                          {"abtastrate", true},
-                                          {"sampling interval", false},
-                                          {"sample interval", false},
-                                          {"sampling period", false},
-                                          {"sample period", false},
-                                          {"sampling time", false},
-                                          {"sample time", false},
-                                          {"sampletime", false},
-                                          {"abtastzeit", false},
-                                          {"hresolution", false, true},  // of Yokogawa
-                                          {"delta_x", false, true},      // of LabVIEW
-                                          {"tinc", false, true}});       // of Rigol
+constexpr auto keys = std::to_array<Key>(
+    {{"sampling frequency", true}, {"sample frequency", true}, {"abtastfrequenz", true},   {"sampling rate", true},
+     {"sample rate", true},        {"sample_rate", true},      {"samplerate", true},       {"abtastrate", true},
+     {"sampling interval", false}, {"sample interval", false}, {"sampling period", false}, {"sample period", false},
+     {"sampling time", false},     {"sample time", false},     {"sampletime", false},      {"abtastzeit", false},
+     {"hresolution", false, true},  // of Yokogawa
+     {"delta_x", false, true},      // of LabVIEW
+     {"xinc:", false, true},        // of Keysight
+     {"tinc", false, true}});       // of Rigol
 
 constexpr std::string_view between = " \t\"'=:;,|";
 
@@ -106,6 +96,23 @@ double begin_of(std::string_view line) {
   return number.status == NumberStatus::Finite ? number.value : 0.0;
 }
 
+/// Whether the cells of a line state several numbers: signals at rates of their own.
+bool has_several_numbers(std::string_view cells) {
+  std::optional<double> first;
+  while (!cells.empty()) {
+    const auto end = std::min(cells.find_first_of(",;\t"), cells.size());
+    const ParsedNumber number = parse_number(trimmed(cells.substr(0, end), " \"'"));
+    if (number.status == NumberStatus::Finite) {
+      if (first && *first != number.value) {
+        return true;
+      }
+      first = number.value;
+    }
+    cells.remove_prefix(std::min(end + 1, cells.size()));
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<StatedRate> stated_rate(const std::vector<Line>& head, std::size_t first_row) {
@@ -129,6 +136,7 @@ std::optional<StatedRate> stated_rate(const std::vector<Line>& head, std::size_t
         result = StatedRate{.period = period,
                             .begin = key.text == "tinc" ? begin_of(line) : 0.0,
                             .words = std::string(line.substr(0, 60)),
+                            .differs = key.is_of_rows && key.text != "tinc" && has_several_numbers(rest),
                             .is_of_rows = key.is_of_rows};
       }
       break;

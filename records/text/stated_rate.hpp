@@ -14,6 +14,7 @@ struct StatedRate {
   double period = 0.0;      ///< s, above 0
   double begin = 0.0;       ///< s, of the first row
   std::string words{};      ///< the line that says it
+  bool differs = false;     ///< the line states another step for another column
   bool is_of_rows = false;  ///< the format says so of files without a column of times; else it is a remark of the tool
 };
 

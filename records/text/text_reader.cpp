@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "records/text/cell_mend.hpp"
+#include "records/text/decimal_marks.hpp"
 #include "records/text/encoding.hpp"
 #include "records/text/layout.hpp"
 #include "records/text/long_table.hpp"
@@ -30,8 +31,13 @@ class Reader {
     if (!text.encoding.empty()) {
       table_.notes.push_back("the text is " + text.encoding);
     }
+    if (text.empty_bytes > 0) {
+      table_.notes.push_back(
+          fmt::format("the last {} of the file were laid out and not written", counted(text.empty_bytes, "byte")));
+    }
     source_ = std::make_shared<SourceText>(SourceText{.file = file, .text = std::move(text.text)});
     layout_ = layout_of(*source_, options.skip);
+    marks_ = DecimalMarks(*source_, diagnostics_, layout_.cells);
     source_->separator = layout_.separator;
     names_ = layout_.names ? source_->line_at(*layout_.names).text : std::string_view();
     table_.notes.insert(table_.notes.end(), layout_.notes.begin(), layout_.notes.end());
@@ -41,7 +47,9 @@ class Reader {
     name_columns();
     read_rows();
     stop_on_errors();
-    doubt_points();
+    if (!options_.decimal) {
+      marks_.doubt_points(table_, layout_.separator);
+    }
     count_time();
     table_.rows = source_->rows.size();
     if (table_.rows < 2) {
@@ -121,7 +129,14 @@ class Reader {
         blank_ = blank_ ? blank_ : line;
       } else if (!is_comment(line.text, layout_.separator)) {
         read_row(line);
+      } else {
+        remarked_rows_ += is_row_in_remark(line) ? 1 : 0;
       }
+    }
+    if (remarked_rows_ > 0) {
+      table_.notes.push_back(fmt::format("{} between the rows {} a remark, with as many numbers, and {} left out",
+                                         counted(remarked_rows_, "line"), remarked_rows_ == 1 ? "is" : "are",
+                                         remarked_rows_ == 1 ? "was" : "were"));
     }
     if (repeated_names_ > 0) {
       table_.notes.push_back(fmt::format("the row of names stands {} more between the rows, and was passed over",
@@ -145,8 +160,10 @@ class Reader {
     }
     const bool any_value =
         std::ranges::any_of(cells_, [&](const Cell& cell) { return is_value(cell_value(cell.text).kind); });
-    if (repeats_names(line)) {
+    if (repeats_names(line)) {  // and what stands above them: each part of a record has its head
       ++repeated_names_;
+      stray_.reset();
+      blank_.reset();
       return;
     }
     // A summary below the record, "Mean,0.1,0.3", is none of its rows.
@@ -162,7 +179,10 @@ class Reader {
     stray_.reset();
     if (blank_) {
       diagnostics_.error(error::ragged_row, source_->place_of(*blank_), "There is a blank row between rows of numbers.",
-                         "remove the row, if no sample is missing there.");
+                         row_ < 2 ? std::string("remove the row, if no sample is missing there.")
+                                  : fmt::format("remove the row, if no sample is missing there; where a second table "
+                                                "begins, read the first alone: --rows 1..{}.",
+                                                row_));
       blank_.reset();
     }
     if (cells_.size() != layout_.cells) {
@@ -177,6 +197,17 @@ class Reader {
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       take_cell(line, cells_[i], i);
     }
+  }
+
+  /// `# 0.001,2,4`: a row that somebody has taken out, which leaves a gap where nothing but a rate tells the times.
+  [[nodiscard]] bool is_row_in_remark(const Line& line) {
+    const auto begin = line.text.find_first_not_of(" \t#%/;");
+    if (begin == std::string_view::npos || row_ == 0) {
+      return false;
+    }
+    cut_line(line.text.substr(begin), layout_.separator, cells_);
+    return cells_.size() > 1 && cells_.size() == layout_.cells &&
+           std::ranges::all_of(cells_, [](const Cell& cell) { return is_value(cell_value(cell.text).kind); });
   }
 
   [[nodiscard]] bool begins_with_value() const {
@@ -259,7 +290,7 @@ class Reader {
       return;
     }
     if (value.kind == CellKind::Number) {
-      check_mark(line, cell, value, index);
+      marks_.see(line, cell, value, index);
       if (!value.unit.empty() && value.unit != column.unit && !column.fault) {
         column.fault = Diagnostic{.number = error::text_for_number,
                                   .place = source_->place_of(line, cell),
@@ -274,80 +305,6 @@ class Reader {
     std::string text(value.digits);
     std::ranges::replace(text, ',', '.');
     resolution.take(is_time ? value.digits == "0" ? "1" : "0." + text : text);
-  }
-
-  /// One column has one decimal mark, and so has the file: where both are found, one of them separates thousands.
-  void check_mark(const Line& line, const Cell& cell, const CellValue& value, std::size_t index) {
-    if (value.has_point) {
-      pointed_.resize(layout_.cells);
-      Pointed& points = pointed_[index];
-      ++points.count;
-      points.first = points.first ? points.first : std::optional(std::pair(line, cell));
-      points.thousands = points.thousands && looks_grouped(cell.text);
-    } else if (!value.has_comma) {
-      pointed_.resize(layout_.cells);
-      ++pointed_[index].whole;
-    }
-    if (!value.has_comma && !value.has_point) {
-      return;
-    }
-    auto& seen = value.has_comma ? comma_seen_ : point_seen_;
-    const auto& other = value.has_comma ? point_seen_ : comma_seen_;
-    if (seen) {
-      return;
-    }
-    seen = std::pair(line, cell);
-    if (other) {
-      diagnostics_.error(error::ambiguous_decimal_mark, source_->place_of(line, cell),
-                         fmt::format("{} has a decimal {}, an earlier number has a decimal {}.", cell.text,
-                                     value.has_comma ? "comma" : "point", value.has_comma ? "point" : "comma"),
-                         mend_of_two_marks(cell.text, other->second.text),
-                         {{.place = source_->place_of(other->first, other->second), .text = "the earlier number"}});
-    }
-  }
-
-  /// 1,052 beside 0.001: what cannot separate thousands is the decimal mark.
-  static std::string mend_of_two_marks(std::string_view one, std::string_view other) {
-    const auto is_thousands = [](std::string_view text) {
-      return number_with_mark(text, text.find('.') != std::string_view::npos ? ',' : '.').kind == CellKind::Number;
-    };
-    const bool one_has_point = one.find('.') != std::string_view::npos;
-    const bool points = is_thousands(one_has_point ? one : other);
-    const bool commas = is_thousands(one_has_point ? other : one);
-    return points && commas ? "if points separate thousands, say --decimal comma; if commas do, say --decimal point."
-           : points         ? "if points separate thousands, say --decimal comma."
-           : commas         ? "if commas separate thousands, say --decimal point."
-                            : "write all numbers with the same decimal mark.";
-  }
-
-  /// 2.664, 12.345: three digits behind the point, and no zero alone before it.
-  static bool looks_grouped(std::string_view text) {
-    text = text.substr(text.starts_with('-') || text.starts_with('+') ? 1 : 0);
-    const auto point = text.find('.');
-    return point >= 1 && point <= 3 && text.size() == point + 4 && text.front() != '0';
-  }
-
-  /// `888;2.664`: where a column has whole numbers below a thousand beside some with three digits behind a point, and
-  /// the separator is none that goes with a decimal point, the point may separate thousands.
-  void doubt_points() {
-    if (options_.decimal || (layout_.separator != ';' && layout_.separator != '\t')) {
-      return;
-    }
-    for (std::size_t i = 0; i < pointed_.size(); ++i) {
-      const Pointed& points = pointed_[i];
-      if (points.count == 0 || points.whole == 0 || !points.thousands || table_.columns[i].fault) {
-        continue;
-      }
-      const auto& [line, cell] = *points.first;
-      std::string without(cell.text);
-      std::erase(without, '.');
-      table_.columns[i].fault = Diagnostic{
-          .number = error::ambiguous_decimal_mark,
-          .place = source_->place_of(line, cell),
-          .cause = fmt::format("{} in column {} could be read in two ways: the point may separate thousands, as in {}.",
-                               cell.text, table_.columns[i].name, without),
-          .mend = "say which: --decimal comma, and points separate thousands; or --decimal point."};
-    }
   }
 
   /// Of a column of counts, the times.
@@ -375,24 +332,8 @@ class Reader {
           Diagnostic{.number = error::text_for_number,
                      .place = column.place,
                      .cause = fmt::format("Column {} holds no numbers: it begins with \"{}\".", column.name, cell.text),
-                     .mend = is_hexadecimal(cell.text) ? mend_of_word(cell.text) : std::string(another_column)};
+                     .mend = mend_of_words(cell.text)};
     }
-  }
-
-  static bool is_hexadecimal(std::string_view word) {
-    return word.starts_with("0x") || word.starts_with("0X") || word.starts_with("16#");
-  }
-
-  static std::string mend_of_word(std::string_view word) {
-    if (is_hexadecimal(word)) {
-      std::uint64_t value = 0;
-      const std::size_t prefix = word.starts_with("16#") ? 3 : 2;
-      const auto [end, problem] = std::from_chars(word.data() + prefix, word.data() + word.size(), value, 16);
-      if (problem == std::errc{} && end == word.data() + word.size()) {
-        return fmt::format("it is hexadecimal: write {}, as all of the column in decimal digits.", value);
-      }
-    }
-    return "write a number, such as 1.25e-3, or record the signal again.";
   }
 
   /// Numbers words in the order in which they come.
@@ -458,6 +399,9 @@ class Reader {
                           ? fmt::format("Column {} holds \"{}\" here: no value was measured.", column.name, cell.text)
                           : fmt::format("\"{}\" in column {} is no number.", cell.text, column.name);
         found.mend = missing ? bridged : mend_of_word(cell.text);
+        if (!missing && row_ > 2 && &column == &table_.columns.front()) {  // a summary below the record
+          found.mend += fmt::format(" If the record ends above, read it so: --rows 1..{}.", row_ - 1);
+        }
     }
     column.fault = std::move(found);
   }
@@ -475,16 +419,9 @@ class Reader {
   std::optional<Line> blank_;
   std::string_view names_{};  ///< the row of names; empty where there is none
   std::size_t repeated_names_ = 0;
+  std::size_t remarked_rows_ = 0;
   std::optional<Line> stray_;  ///< text behind the rows: the end of the file, unless rows follow
-  struct Pointed {
-    std::size_t count = 0;  ///< numbers with a point
-    std::size_t whole = 0;  ///< numbers without a decimal mark
-    bool thousands = true;  ///< all points could separate thousands
-    std::optional<std::pair<Line, Cell>> first{};
-  };
-  std::vector<Pointed> pointed_;
-  std::optional<std::pair<Line, Cell>> comma_seen_;
-  std::optional<std::pair<Line, Cell>> point_seen_;
+  DecimalMarks marks_;
 };
 
 }  // namespace

@@ -257,9 +257,12 @@ std::optional<TimeOfDay> take_clock(std::string_view& text) {
   }
   int hour = *hours;
   std::string_view behind = trimmed(rest);
-  if (behind.size() >= 2 && is_one_of(behind.substr(0, 2), {"AM", "PM"})) {
-    hour = hour % 12 + (equal_ignoring_case(behind.substr(0, 2), "PM") ? 12 : 0);
-    rest = behind.substr(2);
+  for (const std::string_view half : {"am", "pm", "a.m.", "p.m.", "a. m.", "p. m."}) {
+    if (equal_ignoring_case(behind.substr(0, half.size()), half)) {
+      hour = hour % 12 + (half.front() == 'p' ? 12 : 0);
+      rest = behind.substr(half.size());
+      break;
+    }
   }
   if (hour > 24 || *minutes > 59 || seconds > 60) {
     return std::nullopt;

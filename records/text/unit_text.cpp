@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "support/names.hpp"
 #include "support/trimmed.hpp"
@@ -71,6 +72,70 @@ bool is_factor(std::string_view text) {
   });
 }
 
+struct Word {
+  std::string_view word, unit;
+};
+/// Take a prefix, written out or not: millivolt, mVolt.
+constexpr auto long_words = std::to_array<Word>({{"volt", "V"},
+                                                 {"ampere", "A"},
+                                                 {"amp", "A"},
+                                                 {"watt", "W"},
+                                                 {"metre", "m"},
+                                                 {"meter", "m"},
+                                                 {"newtonmetre", "Nm"},
+                                                 {"newtonmeter", "Nm"},
+                                                 {"newton", "N"},
+                                                 {"gramm", "g"},
+                                                 {"gram", "g"},
+                                                 {"pascal", "Pa"},
+                                                 {"hertz", "Hz"},
+                                                 {"second", "s"},
+                                                 {"sekunden", "s"},
+                                                 {"sekunde", "s"},
+                                                 {"radian", "rad"},
+                                                 {"kelvin", "K"},
+                                                 {"ohm", "Ohm"}});
+constexpr auto long_prefixes = std::to_array<Word>({{"milli", "m"},
+                                                    {"micro", "u"},
+                                                    {"mikro", "u"},
+                                                    {"nano", "n"},
+                                                    {"kilo", "k"},
+                                                    {"mega", "M"},
+                                                    {"centi", "c"},
+                                                    {"zenti", "c"}});
+
+/// millivolts, mVolts, microns; nothing where it is none of these. A prefix of one letter keeps its case: M is not m.
+std::optional<std::string> unit_of_long_word(std::string_view text) {
+  const auto base = [](std::string_view word) -> std::optional<std::string_view> {
+    const auto* const found = std::ranges::find_if(long_words, [&](const Word& one) {
+      return equal_ignoring_case(one.word, word) || (word.size() > 1 && (word.back() == 's' || word.back() == 'S') &&
+                                                     equal_ignoring_case(one.word, word.substr(0, word.size() - 1)));
+    });
+    return found == long_words.end() ? std::nullopt : std::optional(found->unit);
+  };
+  if (is_one_of(text, {"micron", "microns"})) {
+    return "um";
+  }
+  if (const auto unit = base(text)) {
+    return std::string(*unit);
+  }
+  for (const Word& prefix : long_prefixes) {
+    const auto unit = equal_ignoring_case(text.substr(0, prefix.word.size()), prefix.word)
+                          ? base(text.substr(prefix.word.size()))
+                          : std::nullopt;
+    if (unit) {
+      return std::string(prefix.unit) + std::string(*unit);
+    }
+  }
+  for (const std::string_view prefix : prefixes) {
+    const auto unit = text.starts_with(prefix) ? base(text.substr(prefix.size())) : std::nullopt;
+    if (unit) {
+      return std::string(prefix) + std::string(*unit);
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string_view without_brackets(std::string_view text) {
@@ -81,20 +146,17 @@ std::string_view without_brackets(std::string_view text) {
 
 std::string unit_of_word(std::string_view text) {
   text = without_brackets(text);
-  struct Word {
-    std::string_view word, unit;
-  };
-  constexpr auto words = std::to_array<Word>({{"Volt", "V"},
-                                              {"Volts", "V"},
-                                              {"VDC", "V"},
-                                              {"Ampere", "A"},
-                                              {"Amperes", "A"},
-                                              {"Amps", "A"},
+  constexpr auto words = std::to_array<Word>({{"VDC", "V"},
+                                              {"mVDC", "mV"},
                                               {"ADC", "A"},
-                                              {"Watt", "W"},
-                                              {"Degree", "deg"}});
+                                              {"mADC", "mA"},
+                                              {"Degree", "deg"},
+                                              {"Degrees", "deg"},
+                                              {"Grad", "deg"},
+                                              {"percent", "%"},
+                                              {"Prozent", "%"}});
   const auto found = std::ranges::find_if(words, [&](const Word& one) { return equal_ignoring_case(one.word, text); });
-  return std::string(found == words.end() ? text : found->unit);
+  return found != words.end() ? std::string(found->unit) : unit_of_long_word(text).value_or(std::string(text));
 }
 
 bool is_known_unit(std::string_view text) {
@@ -120,7 +182,11 @@ bool is_known_unit(std::string_view text) {
 }
 
 bool is_key_of_units(std::string_view text) {
-  return is_one_of(text, {"unit", "units", "unit:", "units:", "einheit", "einheiten"});
+  return is_one_of(
+      text,
+      {"unit",          "units",     "unit:",        "units:",        "einheit",    "einheiten", "einheit:",
+       "y-unit",        "yunits",    "y unit",       "vertical unit", "eng. units", "eng units", "engineering units",
+       "physical unit", "dimension", "unit\xC3\xA9", "unit\xC3\xA9s", "unidad",     "unidades"});
 }
 
 std::string_view without_unit_key(std::string_view text) {

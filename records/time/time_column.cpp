@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "records/time/counter.hpp"
 #include "records/time/time_unit.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -125,6 +126,13 @@ std::vector<std::size_t> candidates(const Table& table) {
       rising.push_back(i);
     }
   }
+  const auto counts_rows = [&](std::size_t i) {
+    const std::vector<double>& values = table.columns[i].values;
+    return is_one_of(table.columns[i].name, {"sample", "samples", "index", "row", "count", "counter", "scan", "number",
+                                             "no", "no.", "nr", "nr.", "n", "k", "i", "#", "point", "record"}) &&
+           (values.front() == 0.0 || values.front() == 1.0) &&
+           std::ranges::adjacent_find(values, [](double a, double b) { return b != a + 1.0; }) == values.end();
+  };
   const bool named = std::ranges::any_of(table.columns, [](const TableColumn& one) { return one.is_named; });
   std::string mend =
       "state how many rows a second it has, such as --rate 1kHz, or name its column, as --time NAME[ms].";
@@ -132,6 +140,12 @@ std::vector<std::size_t> candidates(const Table& table) {
     mend = fmt::format(
         "above the rows stands \"{}\": read it with --rate {}Hz, or name the column of the time, as --time NAME[ms].",
         table.stated->words, rounded_text(1.0 / table.stated->period));
+  } else if (const auto count = std::ranges::find_if(rising, counts_rows); count != rising.end()) {
+    const std::string& name = table.columns[*count].name;
+    mend = fmt::format(
+        "column {} counts the rows: state how many there are in a second, such as --rate 1kHz; or, if it is a time, "
+        "read it with --time {}.",
+        name, option_value(name + "[s]"));
   } else if (!rising.empty()) {
     mend = fmt::format(
         "column {} rises from row to row: if that is the time, read it with --time {}; without a "
@@ -201,41 +215,14 @@ std::string date_text(std::int64_t seconds) {
                      time.minutes().count(), time.seconds().count());
 }
 
-/// Counters of 16 and 32 bits begin anew: micros() after 71 minutes. True where the times go on so, and are even.
-bool unwrapped(const std::vector<double>& values, std::vector<double>& result) {
-  if (std::ranges::adjacent_find(values, std::greater_equal{}) == values.end()) {
-    return false;
-  }
-  const double usual = median_step(values);
-  for (const double size : {65536.0, 4294967296.0}) {
-    result.clear();
-    double turns = 0.0;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      const double step = k == 0 ? usual : values[k] - values[k - 1];
-      turns += step < -0.5 * size ? 1.0 : 0.0;
-      result.push_back(values[k] - values.front() + turns * size);
-      if (values[k] >= size || values[k] < 0.0 || values[k] != std::floor(values[k])) {
-        turns = 0.0;
-        break;
-      }
-    }
-    const auto uneven = [&](double a, double b) { return !(b - a > 0.5 * usual && b - a < 1.5 * usual); };
-    if (turns > 0.0 && usual > 0.0 && std::ranges::adjacent_find(result, uneven) == result.end()) {
-      return true;
-    }
-  }
-  return false;
-}
-
 /// The times of a column in its own unit. Numbers that count from the record's begin are those that were printed, to
 /// the bit; dates, and numbers that count from elsewhere, count from the first row.
 std::vector<double> raw_times(const TableColumn& column, const std::vector<Stamp>& stamps, bool is_date,
                               bool is_epoch) {
   const bool is_clock = is_clock_kind(column.kind);
   const Stamp first = stamps.front();
-  std::vector<double> wrapped;
-  if (column.kind == CellKind::Number && !is_epoch && unwrapped(column.values, wrapped)) {
-    return wrapped;
+  if (auto wrapped = column.kind == CellKind::Number && !is_epoch ? unwrapped(column.values) : std::nullopt) {
+    return std::move(*wrapped);
   }
   if (!is_clock && !is_epoch && std::abs(raw_value(first)) <= longest_record) {
     return column.values;
@@ -413,6 +400,12 @@ Times times_of(const Table& table, const ReadOptions& options) {
     if (found.size() > 1 && std::ranges::any_of(found, [&](std::size_t i) { return rises(table.columns[i]); })) {
       std::erase_if(found, [&](std::size_t i) { return !rises(table.columns[i]); });
     }
+  }
+  if (found.empty() && table.stated && table.stated->differs) {
+    throw InputError(
+        error::two_readings, table.place,
+        fmt::format("Above the rows stands \"{}\": the signals have rates of their own.", table.stated->words),
+        "write each signal with its time (X_Columns Multi in LabVIEW), or each into a file of its own.");
   }
   if (found.empty() && table.stated && table.stated->is_of_rows) {
     result.grid.sample_time = table.stated->period;

@@ -98,7 +98,7 @@ TEST(CsvReader, RefusesWhatIsNoRecord) {
       {"t,u\n0,1\n1,0x10\n", "HY505 error: log.csv:3:3: \"0x10\"", "write 16,"},
       {"t,u\n0,1\n1,0xZ\n", "HY505 error: log.csv:3:3: \"0xZ\"", "such as"},
       {"t,u\n0,1\n1,1 2\n", "HY505 error: log.csv:3:3: \"1 2\"", "such as"},
-      {"t,u\n0,1\n1,\"2\n", R"(HY505 error: log.csv:3:3: ""2")", "such as"},
+      {"t,u\n0,1\n1,\"2\n", R"(HY505 error: log.csv:3:3: ""2")", "alone, 2"},
       {"t;u\n0;1\n1;a,b\n", "HY505 error: log.csv:3:3: \"a,b\"", "such as"},
       {"t,u\n0,1 V\n1,1 mV\n", "HY505 error: log.csv:3:3: 1 mV is in mV, but column u is in V", "one unit"},
       {"t,u\n0,1\n1,-Inf\n", "HY506 error: log.csv:3:3: Column u holds -Inf", "--rows"},

@@ -1,4 +1,6 @@
 // Dialects of tools that the dresses do not show: each is read to the same numbers, or refused with the way out.
+#include "tests/records/dialect.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -21,28 +23,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr int samples = 40;
-
-double drive(int k) {
-  return std::round(1e4 * (1.6 * std::sin(0.7 * k) + 0.9 * std::sin(0.23 * k + 0.4))) / 1e4;
-}
-
-/// {k} the row, {t} its seconds, {u} and {y} = 3·u with four decimals.
-std::string written(std::string_view head, std::string_view row, std::string_view tail = "") {
-  std::string text(head);
-  for (int k = 0; k < samples; ++k) {
-    text += fmt::format(fmt::runtime(row), fmt::arg("k", k), fmt::arg("t", 1e-3 * k), fmt::arg("u", drive(k)),
-                        fmt::arg("y", 3.0 * drive(k)));
-  }
-  return text + std::string(tail);
-}
-
-struct Dialect {
-  std::string_view name;
-  std::string text;
-  ReadOptions options{};
-};
 
 std::vector<Dialect> dialects() {
   const ReadOptions channels{.columns = {{"u", "CH1"}, {"y", "CH2"}}};
@@ -181,19 +161,7 @@ std::vector<Dialect> dialects() {
 
 TEST(Dialect, EachHoldsTheSameNumbers) {
   for (const Dialect& one : dialects()) {
-    SCOPED_TRACE(one.name);
-    SCOPED_TRACE(one.text.substr(0, 300));
-    Record record = Record::even(0.0, 1.0, 0);
-    ASSERT_NO_THROW(record = parse_record("log.csv", one.text, one.options));
-    ASSERT_EQ(record.size(), static_cast<std::size_t>(samples));
-    EXPECT_DOUBLE_EQ(record.sample_time(), 1e-3);
-    ASSERT_NO_THROW((void)record.column("u"));
-    ASSERT_NO_THROW((void)record.column("y"));
-    for (std::size_t k = 0; k < record.size(); ++k) {
-      EXPECT_NEAR(record.time()[k] - record.time()[0], 1e-3 * static_cast<double>(k), 1e-9);
-      EXPECT_NEAR(record.column("u").values[k], drive(static_cast<int>(k)), 6e-5);
-      EXPECT_NEAR(record.column("y").values[k], 3.0 * drive(static_cast<int>(k)), 6e-5);
-    }
+    expect_the_numbers(one);
   }
 }
 

@@ -41,6 +41,30 @@ std::string said(const std::string& name, const std::string& bytes, const ReadOp
 
 class Mat : public ::testing::TestWithParam<mat_ft> {};
 
+/// Version 4, which Octave and Modelica still write, has no mark at its begin: five small numbers and a name.
+std::string mat4_vector(const std::string& name, const std::vector<double>& values) {
+  std::string bytes;
+  for (const std::size_t part : {std::size_t{0}, values.size(), std::size_t{1}, std::size_t{0}, name.size() + 1}) {
+    const auto word = static_cast<std::uint32_t>(part);
+    bytes.append(reinterpret_cast<const char*>(&word), sizeof word);
+  }
+  bytes.append(name.c_str(), name.size() + 1);
+  bytes.append(reinterpret_cast<const char*>(values.data()), 8 * values.size());
+  return bytes;
+}
+
+TEST(Mat4, IsReadByItsEnding) {
+  const std::string bytes = mat4_vector("t", time_values) + mat4_vector("u", u_values);
+  const Record record = read("log.mat", bytes);
+  EXPECT_THAT(record.names(), ElementsAre("u"));
+  EXPECT_THAT(record.column("u").values, ElementsAreArray(u_values));
+  EXPECT_EQ(record.sample_time(), 0.001);
+  EXPECT_THAT(said("log.mat", mat4_vector("Aclass", {1.0}) + mat4_vector("dataInfo", {1.0})),
+              HasSubstr("outputFormat=\"csv\""));
+  // Text of the same ending, as `save -ascii` writes it.
+  EXPECT_THAT(read("log.mat", "0.000 1.0\n0.001 2.0\n0.002 3.0\n", {.time = "1"}).size(), 3U);
+}
+
 TEST_P(Mat, VectorsAreColumns) {
   const Record record = read("log.mat", MatFile(GetParam())
                                             .add(MatFile::vector("t", time_values))

@@ -37,8 +37,8 @@ class Machines {
     return has_registers_of_eight() ? with(wide_) : count <= 3 ? with(three_) : count <= 5 ? with(five_) : with(seven_);
   }
 
-  /// The one that runs eight sets of parameters side by side. Only where has_registers_of_four() says so, and of a program
-  /// without an FMU.
+  /// The one that runs eight sets of parameters side by side. Only where has_registers_of_four() says so, and of a
+  /// program without an FMU.
   Machine<Lanes>& side_by_side() { return made(lanes_); }
 
  private:

@@ -144,7 +144,7 @@ constexpr auto formats = std::to_array<Format>({
      },
      nullptr, "save it as a MAT-file: in Octave, save(\"-v7\", \"log.mat\", \"t\", \"u\", \"y\")."},
     {"line protocol of InfluxDB", [](std::string_view bytes, std::string_view) { return is_line_protocol(bytes.substr(0, bytes.find('\n'))); },
-     nullptr, "export the signals as CSV: influx query --raw, or the CSV of Grafana or of the data explorer."},
+     nullptr, "export the signals as CSV: `influx query --raw`, or the CSV of Grafana or of the data explorer."},
     {"VCD, the value changes of a simulation",
      [](std::string_view bytes, std::string_view ending) {
        return ending == "vcd" || (begins(bytes, "$") && bytes.substr(0, 4000).find("$enddefinitions") != std::string_view::npos);

@@ -3,9 +3,7 @@
 #include "codegen/interpreter/lanes.hpp"
 #include "codegen/trace/evaluate.hpp"
 
-namespace hysteron {
-
-namespace detail {
+namespace hysteron::detail {
 
 template <Op op>
 void each_function(double* x) {
@@ -45,5 +43,4 @@ void each_int_operation(Op op, const std::int32_t* a, const std::int32_t* b, std
   }
 }
 
-}  // namespace detail
-}  // namespace hysteron
+}  // namespace hysteron::detail

@@ -173,8 +173,8 @@ HY_INLINE LaneInts select(const LaneBools& condition, const LaneInts& a, const L
           __builtin_convertvector(condition.high, detail::LaneIntegers) ? a.high : b.high};
 }
 HY_INLINE LaneWords select(const LaneBools& condition, const LaneWords& a, const LaneWords& b) {
-  return {__builtin_convertvector(condition.low, detail::LaneIntegers) ? a.low : b.low,
-          __builtin_convertvector(condition.high, detail::LaneIntegers) ? a.high : b.high};
+  const LaneInts chosen = select(condition, LaneInts(a.low, a.high), LaneInts(b.low, b.high));
+  return {chosen.low, chosen.high};
 }
 
 HY_INLINE Lanes abs(const Lanes& x) {

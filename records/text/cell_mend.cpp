@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "records/table.hpp"
 #include "records/text/cell_value.hpp"
 #include "records/text/characters.hpp"
 
@@ -35,16 +34,18 @@ std::string_view number_in(std::string_view text) {
   return {};
 }
 
-/// Nothing where no number stands in the word.
-std::string mend_by_number(std::string_view word) {
+}  // namespace
+
+std::optional<std::string> mend_by_number(std::string_view word) {
   const bool is_base_16 = word.starts_with("0x") || word.starts_with("0X") || word.starts_with("16#");
   if (is_base_16) {
     std::uint64_t value = 0;
     const std::size_t prefix = word.starts_with("16#") ? 3 : 2;
     const auto [end, problem] = std::from_chars(word.data() + prefix, word.data() + word.size(), value, 16);
     return problem == std::errc{} && end == word.data() + word.size()
-               ? fmt::format("it is hexadecimal: write {}, as all of the column in decimal digits.", value)
-               : std::string();
+               ? std::optional(
+                     fmt::format("it is hexadecimal: write {}, as all of the column in decimal digits.", value))
+               : std::nullopt;
   }
   if (word.size() > 2 && word.front() == '(' && word.back() == ')' &&
       is_plain_number(word.substr(1, word.size() - 2))) {
@@ -55,25 +56,13 @@ std::string mend_by_number(std::string_view word) {
   }
   const std::string_view number = number_in(word);
   if (number.empty() || word.size() > 40) {
-    return {};
+    return std::nullopt;
   }
   const std::string_view behind = word.substr(static_cast<std::size_t>(number.data() - word.data()) + number.size());
   if (behind == "m" || behind == "k" || behind == "u" || behind == "n" || behind == "M" || behind == "G") {
     return fmt::format("{} behind a number may be a prefix: write {} without it, all rows in one unit.", behind, word);
   }
   return fmt::format("write the number alone, {}, in all rows; a unit stands in the name of the column.", number);
-}
-
-}  // namespace
-
-std::string mend_of_word(std::string_view word) {
-  const std::string by_number = mend_by_number(word);
-  return by_number.empty() ? "write a number, such as 1.25e-3, or record the signal again." : by_number;
-}
-
-std::string mend_of_words(std::string_view first) {
-  const std::string by_number = mend_by_number(first);
-  return by_number.empty() ? std::string(another_column) : by_number;
 }
 
 }  // namespace hysteron::records

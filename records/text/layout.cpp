@@ -343,7 +343,8 @@ class HeadReader {
       const bool all = cells.size() == cells_in_row_ && are_units(cells);
       const bool keyed = is_key_of_units(cells.front().text);
       const bool units = is_one_of(cells.front().text, {"vertical units", "y_unit_label", "vunit"}) || keyed || all;
-      if ((keyed || all) && cells.size() == cells_in_row_ && !own_times) {  // one for each column, the time among them
+      if ((all || (keyed && cells.size() == cells_in_row_)) &&
+          !own_times) {  // one for each column, the time among them
         take_units(cells);
         continue;
       }

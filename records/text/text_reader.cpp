@@ -332,7 +332,7 @@ class Reader {
           Diagnostic{.number = error::text_for_number,
                      .place = column.place,
                      .cause = fmt::format("Column {} holds no numbers: it begins with \"{}\".", column.name, cell.text),
-                     .mend = mend_of_words(cell.text)};
+                     .mend = mend_by_number(cell.text).value_or(std::string(another_column))};
     }
   }
 
@@ -398,7 +398,10 @@ class Reader {
         found.cause = missing
                           ? fmt::format("Column {} holds \"{}\" here: no value was measured.", column.name, cell.text)
                           : fmt::format("\"{}\" in column {} is no number.", cell.text, column.name);
-        found.mend = missing ? bridged : mend_of_word(cell.text);
+        found.mend =
+            missing
+                ? bridged
+                : mend_by_number(cell.text).value_or("write a number, such as 1.25e-3, or record the signal again.");
         if (!missing && row_ > 2 && &column == &table_.columns.front()) {  // a summary below the record
           found.mend += fmt::format(" If the record ends above, read it so: --rows 1..{}.", row_ - 1);
         }

@@ -4,6 +4,30 @@
 #include <cmath>
 
 namespace hysteron::diagnosis {
+namespace {
+
+/// Of many signals at once, one a column: a row is what lies side by side in memory.
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// target += matrix·source. Matrices of diagrams are small and mostly 0: a product of Eigen's would spend its time on
+/// arranging them.
+template <class Matrix, class Source, class Target>
+void add_product(const Matrix& matrix, const Source& source, Target& target) {
+  for (Index i = 0; i < matrix.rows(); ++i) {
+    for (Index j = 0; j < matrix.cols(); ++j) {
+      if (const double factor = matrix(i, j); factor != 0.0) {
+        target.row(i) += factor * source.row(j);
+      }
+    }
+  }
+}
+
+template <class Matrix, class Source, class Target>
+void subtract_product(const Matrix& matrix, const Source& source, Target& target) {
+  add_product(-matrix, source, target);
+}
+
+}  // namespace
 
 Smoother::Smoother(const LinearSystem& system, double step) : system_(system) {
   const Index n = system.states;
@@ -101,32 +125,41 @@ MatrixXd Smoother::missing_for(const MatrixXd& ways, const MatrixXd& signals) co
   const Index p = system_.outputs;
   const Index steps = system_.steps();
   const Index m = signals.cols();
-  MatrixXd innovations(p, m * steps);
-  MatrixXd missing(steps, m);
-  MatrixXd at = MatrixXd::Zero(z, m);
-  MatrixXd forward = MatrixXd::Identity(z, z);
+  const Rows entering = signals;
+  Rows innovations = Rows::Zero(steps * p, m);
+  Rows missing(steps, m);
+  Rows at = Rows::Zero(z, m);
+  Rows next(z, m);
   for (Index k = 0; k < steps; ++k) {
     const auto slopes = system_.a.middleCols(k * z, z);
-    auto innovation = innovations.middleCols(k * m, m);
-    innovation.noalias() = -(slopes.bottomRows(p) * at);
-    innovation.noalias() -= ways.col(k).tail(p) * signals.row(k);
+    auto innovation = innovations.middleRows(k * p, p);
+    subtract_product(slopes.bottomRows(p), at, innovation);
+    subtract_product(ways.col(k).tail(p), entering.row(k), innovation);
     missing.row(k) = at.row(n);
-    at.noalias() += gains_.middleCols(k * p, p) * innovation;
-    forward.topRows(n) = slopes.topRows(n);
-    at = (forward * at).eval();
-    at.topRows(n).noalias() += ways.col(k).head(n) * signals.row(k);
+    add_product(gains_.middleCols(k * p, p), innovation, at);
+    next.setZero();
+    next.row(n) = at.row(n);
+    auto moved = next.topRows(n);
+    add_product(slopes.topRows(n), at, moved);
+    add_product(ways.col(k).head(n), entering.row(k), moved);
+    at.swap(next);
   }
-  MatrixXd adjoint = MatrixXd::Zero(z, m);
+  Rows adjoint = Rows::Zero(z, m);
+  Rows weighed(p, m);
   for (Index k = steps - 1; k >= 0; --k) {
     const auto slopes = system_.a.middleCols(k * z, z);
-    forward.topRows(n) = slopes.topRows(n);
     if (k + 1 < steps) {
-      adjoint = (forward.transpose() * adjoint).eval();
+      next.setZero();
+      next.row(n) = adjoint.row(n);
+      add_product(slopes.topRows(n).transpose(), adjoint.topRows(n), next);
+      adjoint.swap(next);
     }
-    const MatrixXd weighed = inverses_.middleCols(k * p, p) * innovations.middleCols(k * m, m) +
-                             gains_.middleCols(k * p, p).transpose() * adjoint;
-    adjoint.noalias() -= slopes.bottomRows(p).transpose() * weighed;
-    missing.row(k).noalias() -= covariances_.middleCols(k * z, z).row(n) * adjoint;
+    weighed.setZero();
+    add_product(inverses_.middleCols(k * p, p), innovations.middleRows(k * p, p), weighed);
+    add_product(gains_.middleCols(k * p, p).transpose(), adjoint, weighed);
+    subtract_product(slopes.bottomRows(p).transpose(), weighed, adjoint);
+    auto row = missing.middleRows(k, 1);
+    subtract_product(covariances_.middleCols(k * z, z).row(n), adjoint, row);
   }
   return missing;
 }

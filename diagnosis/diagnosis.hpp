@@ -142,6 +142,12 @@ struct MapFinding {
 
 /// One signal over one record, for plots.
 struct Trace {
+  /// The input that it is drawn over where a hysteresis or a play lies between them; of no name: none.
+  struct Over {
+    std::string name{};
+    std::string unit{};
+    std::vector<double> values{};
+  };
   std::string record{};
   std::string signal{};
   std::string unit{};
@@ -150,6 +156,7 @@ struct Trace {
   std::vector<double> nominal{};
   std::vector<double> calibrated{};
   std::vector<double> improved{};
+  Over over{};
 };
 
 /// What would tell the rivals apart best, or show a single cause best.

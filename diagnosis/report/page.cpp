@@ -30,6 +30,22 @@ std::string traces_section(const Diagnosis& diagnosis) {
   return html + "</section>\n";
 }
 
+/// Where a hysteresis lies between an input and an output: the one over the other.
+std::string loops_section(const Diagnosis& diagnosis) {
+  std::string html;
+  for (std::size_t i = 0; i < diagnosis.traces.size(); ++i) {
+    const Trace& trace = diagnosis.traces[i];
+    if (!trace.over.name.empty()) {
+      html += fmt::format(
+          "<details class=\"trace\"{}><summary>{}: {} over {}</summary>\n<div class=\"plot\" "
+          "id=\"loop-{}\"></div></details>\n",
+          html.empty() ? " open" : "", escaped(trace.record), escaped(report::with_unit(trace.signal, trace.unit)),
+          escaped(report::with_unit(trace.over.name, trace.over.unit)), i);
+    }
+  }
+  return html.empty() ? html : "<section class=\"loops\"><h2>Output over input</h2>\n" + html + "</section>\n";
+}
+
 std::string maps_section(const Diagnosis& diagnosis) {
   if (diagnosis.maps.empty()) {
     return {};
@@ -53,6 +69,7 @@ std::string report_page(const Diagnosis& diagnosis, const Program& improved) {
   html += report::split_section(diagnosis);
   html += report::where_section(diagnosis, improved.graph);
   html += traces_section(diagnosis);
+  html += loops_section(diagnosis);
   html += maps_section(diagnosis);
   html += report::rivals_section(diagnosis);
   html += report::next_section(diagnosis);

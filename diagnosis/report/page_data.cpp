@@ -26,6 +26,14 @@ std::string residual_of(const char* name, const std::vector<double>& model, cons
   return fmt::format(",\"{}\":{}", name, array_of(residual));
 }
 
+std::string over_of(const Trace& trace) {
+  if (trace.over.name.empty()) {
+    return {};
+  }
+  return fmt::format(R"(,"over":{{"name":{},"unit":{},"values":{}}})", text_of(trace.over.name),
+                     text_of(trace.over.unit), array_of(trace.over.values));
+}
+
 std::string trace_of(const Diagnosis& diagnosis, const Trace& trace) {
   double floor = 0.0;
   for (const GapFinding& gap : diagnosis.gaps) {
@@ -34,12 +42,12 @@ std::string trace_of(const Diagnosis& diagnosis, const Trace& trace) {
   if (diagnosis.gap.signal == trace.signal) {
     floor = diagnosis.gap.floor.value;
   }
-  return fmt::format(R"({{"record":{},"signal":{},"unit":{},"floor":{},"time":{},"measured":{}{}{}{}}})",
+  return fmt::format(R"({{"record":{},"signal":{},"unit":{},"floor":{},"time":{},"measured":{}{}{}{}{}}})",
                      text_of(trace.record), text_of(trace.signal), text_of(trace.unit), number_of(floor),
                      time_of(trace.time), array_of(trace.measured),
                      residual_of("nominal", trace.nominal, trace.measured),
                      residual_of("calibrated", trace.calibrated, trace.measured),
-                     residual_of("improved", trace.improved, trace.measured));
+                     residual_of("improved", trace.improved, trace.measured), over_of(trace));
 }
 
 std::string map_of(const MapFinding& map) {

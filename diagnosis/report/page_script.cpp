@@ -45,6 +45,24 @@ function traceFigure(host, trace) {
   });
 }
 
+// An output over the input that drives its hysteresis: measured, before, after.
+function loopFigure(host, trace) {
+  const inputs = numbers(trace.over.values), measured = numbers(trace.measured);
+  const model = (name, kind, text, shown) => trace[name] === undefined ? [] :
+    [{ kind, text, shown, x: inputs, y: numbers(trace[name]).map((value, k) => measured[k] + value) }];
+  const curves = [{ kind: "measured", text: "measured", shown: true, x: inputs, y: measured },
+                  ...model("calibrated", "before", "before: calibrated", trace.improved === undefined),
+                  ...model("improved", "after", "after: improved", true)];
+  const xLabel = named(trace.over.name, trace.over.unit), yLabel = named(trace.signal, trace.unit);
+  zoomFigure(host, {
+    name: `${trace.signal} over ${trace.over.name}`, plane: true, entries: curves, xLabel,
+    x: reach([inputs], 0, inputs.length, []),
+    y: reach(curves.map(curve => curve.y), 0, Infinity, []),
+    panels: () => [{ title: "", yLabel, height: 380, curves: curves.filter(curve => curve.shown) }],
+    read: (x, y) => `${xLabel} = ${figure(x)} · ${yLabel} = ${figure(y)}`,
+  });
+}
+
 // One small plot a map, those that explain most first.
 function mapFigures(host, maps, unit) {
   keys(host, [{ kind: "before", text: "before: calibrated, RMS" }, { kind: "after", text: "after: improved, RMS" },
@@ -104,19 +122,24 @@ function commandFigure(host, next) {
 }
 
 let figures = 0;
-data.traces.forEach((trace, i) => {
-  const host = document.getElementById("trace-" + i);
+// What a reader opens is drawn then, and not before.
+function drawOnceOpen(host, drawIt) {
   const frame = host.closest("details");
   let drawn = false;
   const show = () => {
     if (frame.open && !drawn) {
       drawn = true;
-      traceFigure(host, trace);
+      drawIt();
     }
   };
   frame.addEventListener("toggle", show);
   show();
   figures += drawn ? 1 : 0;
+}
+data.traces.forEach((trace, i) => {
+  const overTime = document.getElementById("trace-" + i), loop = document.getElementById("loop-" + i);
+  drawOnceOpen(overTime, () => traceFigure(overTime, trace));
+  if (loop) drawOnceOpen(loop, () => loopFigure(loop, trace));
 });
 window.addEventListener("beforeprint", () => {
   document.querySelectorAll("details.trace").forEach((frame, i) => { if (i < 4) frame.open = true; });

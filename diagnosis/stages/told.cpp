@@ -13,6 +13,7 @@
 #include "diagnosis/findings/gaps.hpp"
 #include "diagnosis/findings/inner_signals.hpp"
 #include "diagnosis/findings/left_out_findings.hpp"
+#include "diagnosis/findings/loops.hpp"
 #include "diagnosis/findings/maps.hpp"
 #include "diagnosis/findings/shares.hpp"
 #include "diagnosis/findings/where.hpp"
@@ -159,6 +160,7 @@ Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOption
     effect.family = known == families.end() ? effect.id : known->second;
   }
   result.traces = traces_of(record.task, result.gaps, record.nominal, calibrated.fit.residuals, kept.fit.residuals);
+  draw_over_inputs(record.task, kept.variant.program->graph, judged.evidence, result.traces);
   add_improved(judged, kept, result);
   add_outlook({.task = record.task,
                .nominal = *record.given,

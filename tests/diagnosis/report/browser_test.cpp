@@ -30,6 +30,19 @@ TEST_F(ReportInBrowser, AllFiguresAreDrawnWithoutAFault) {
   }
 }
 
+TEST_F(ReportInBrowser, AHysteresisIsDrawnOverItsInput) {
+  Diagnosis found = fixture::rich_diagnosis();
+  found.traces[0].over = {.name = "U", .unit = "V", .values = found.traces[1].measured};
+  const Shown rich = shown(report_page(found, fixture::rich_program()), R"(
+    const curves = [...document.querySelectorAll("#loop-0 path.curve")];
+    document.body.dataset.curves = curves.map(curve => curve.getAttribute("class").replace("curve ", "")).join();
+    document.body.dataset.empty = curves.filter(curve => !curve.getAttribute("d")).length;)");
+  expect_no_fault(rich);
+  EXPECT_THAT(rich.page, HasSubstr("data-figures=\"11\""));
+  EXPECT_THAT(rich.page, HasSubstr("data-curves=\"measured,after\""));
+  EXPECT_THAT(rich.page, HasSubstr("data-empty=\"0\""));
+}
+
 TEST_F(ReportInBrowser, EmptyAndRefusedPagesRunWithoutAFault) {
   expect_no_fault(shown(report_page({}, {})));
   expect_no_fault(shown(report_page(fixture::refused_diagnosis(), fixture::rich_program())));

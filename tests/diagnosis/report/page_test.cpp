@@ -95,6 +95,18 @@ TEST(ReportPage, SaysWhichPartTheGapBelongsTo) {
   EXPECT_EQ(unbalanced(page), "");
 }
 
+TEST(ReportPage, AHysteresisIsDrawnOverItsInput) {
+  Diagnosis found = fixture::rich_diagnosis(50);
+  EXPECT_THAT(report_page(found, fixture::rich_program()), Not(HasSubstr("Output over input")));
+  found.traces[0].over = {.name = "U", .unit = "V", .values = found.traces[1].measured};
+  const std::string page = report_page(found, fixture::rich_program());
+  EXPECT_THAT(page, HasSubstr("run 3, triangles: Y [um] over U [V]"));
+  EXPECT_EQ(unbalanced(page), "");
+  const nlohmann::json data = nlohmann::json::parse(data_of(page));
+  EXPECT_EQ(data["traces"][0]["over"]["values"].size(), found.traces[1].measured.size());
+  EXPECT_FALSE(data["traces"][1].contains("over"));
+}
+
 TEST(ReportPage, ARefusedRecordHasItsReasonsAndNoConfidence) {
   const std::string page = report_page(fixture::refused_diagnosis(), fixture::rich_program());
   EXPECT_THAT(page, HasSubstr("Record refused"));

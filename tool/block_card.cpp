@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
@@ -18,33 +19,52 @@
 namespace hysteron::tool {
 namespace {
 
+/// Of paragraphs, where a terminal is no narrower.
 constexpr std::size_t page_width = 100;
+/// Behind the columns of a pin; where there is less, its words stand below.
+constexpr std::size_t least_room = 24;
+constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
 
 std::string type_text(const Field& field) {
   return field.length > 1 ? fmt::format("ARRAY [0..{}] OF {}", field.length - 1, type_name(field.type))
                           : std::string(type_name(field.type));
 }
 
-/// Words in lines of the page's width, each behind an indent.
-std::string wrapped(std::string_view words, std::size_t indent) {
-  std::string text;
-  std::size_t width = 0;
-  while (!words.empty()) {
+/// Words in lines of a width, the first behind `head`, the others behind an indent.
+std::string filled(std::string_view head, std::string_view words, std::size_t indent, std::size_t width) {
+  std::string text(head);
+  std::size_t at = character_count(head);
+  for (bool is_first = true; !words.empty(); is_first = false) {
     const auto end = std::min(words.find(' '), words.size());
     const auto word = words.substr(0, end);
     words.remove_prefix(std::min(end + 1, words.size()));
     const auto length = character_count(word);
-    if (width == 0 || width + 1 + length > page_width) {
-      text += (text.empty() ? "" : "\n") + std::string(indent, ' ');
-      width = indent;
-    } else {
+    if (!is_first && at + 1 + length > width) {
+      text += "\n" + std::string(indent, ' ');
+      at = indent;
+    } else if (!is_first) {
       text += ' ';
-      ++width;
+      ++at;
     }
     text += word;
-    width += length;
+    at += length;
   }
-  return text.empty() ? text : text + "\n";
+  return text + "\n";
+}
+
+/// A paragraph behind an indent; none without words.
+std::string paragraph(std::string_view words, std::size_t indent, std::size_t width) {
+  return words.empty() ? std::string() : filled(std::string(indent, ' '), words, indent, width);
+}
+
+/// The columns of a pin and what is said of it: beside them, or below where a terminal is too narrow.
+std::string pin_line(const std::string& columns, const std::string& words, std::size_t width) {
+  constexpr std::size_t below = 6;
+  const std::size_t at = character_count(columns);
+  if (!words.empty() && at + least_room <= width) {
+    return filled(columns, words, at, width);
+  }
+  return columns.substr(0, columns.find_last_not_of(' ') + 1) + "\n" + paragraph(words, below, width);
 }
 
 /// What is to be known of a field besides its meaning: range, default, neutral setting.
@@ -82,7 +102,7 @@ std::string padded(const std::string& text, std::size_t width) {
   return text + std::string(width - std::min(width, character_count(text)), ' ');
 }
 
-std::string section(std::string_view title, std::span<const Field> fields, bool are_outputs) {
+std::string section(std::string_view title, std::span<const Field> fields, bool are_outputs, std::size_t width) {
   if (fields.empty()) {
     return {};
   }
@@ -94,9 +114,10 @@ std::string section(std::string_view title, std::span<const Field> fields, bool 
   std::string text = fmt::format("\n{}\n", title);
   for (const Field& field : fields) {
     const auto limits = limits_text(field, are_outputs);
-    text += fmt::format("  {}  {}  {}  {}{}\n", padded(name_text(field), names), padded(type_text(field), types),
-                        padded(unit_text(field), units), field.meaning,
-                        limits.empty() || field.meaning.empty() ? limits : "; " + limits);
+    text += pin_line(
+        fmt::format("  {}  {}  {}  ", padded(name_text(field), names), padded(type_text(field), types),
+                    padded(unit_text(field), units)),
+        fmt::format("{}{}", field.meaning, limits.empty() || field.meaning.empty() ? limits : "; " + limits), width);
   }
   return text;
 }
@@ -183,24 +204,27 @@ std::vector<std::string_view> feedthrough_inputs(const BlockType& block, std::si
   return names;
 }
 
-std::string card_text(const BlockType& block) {
+std::string card_text(const BlockType& block, std::size_t terminal) {
+  const std::size_t columns = terminal == 0 ? unlimited : terminal;
+  const std::size_t width = std::min(page_width, columns);
   const About& about = block.about;
   std::string text = fmt::format("{}: {} ({})\n\n", about.name, about.title, group_name(about.group));
-  text += wrapped(about.equation, 2) + (about.equation.empty() ? "" : "\n") + wrapped(about.meaning, 0);
-  text += section("inputs", block.inputs, false);
-  text += section("parameters", block.params, false);
-  text += section("outputs", block.outputs, true);
+  text +=
+      paragraph(about.equation, 2, width) + (about.equation.empty() ? "" : "\n") + paragraph(about.meaning, 0, width);
+  text += section("inputs", block.inputs, false, columns);
+  text += section("parameters", block.params, false, columns);
+  text += section("outputs", block.outputs, true, columns);
   text += "\nfeedthrough: inputs that an output depends on within the same step\n";
   for (std::size_t i = 0; i < block.outputs.size(); ++i) {
     text += "  " + feedthrough_line(block, i) + "\n";
   }
   if (!about.delay.empty()) {
-    text += "\ndelay and gain\n" + wrapped(about.delay, 2);
+    text += "\ndelay and gain\n" + paragraph(about.delay, 2, width);
   }
   if (!about.effect.empty()) {
-    text += "\neffect\n" + wrapped(fmt::format("{}, of the family {}, between XIN and XOUT.{}", about.effect,
-                                               name_of(about.family), limits_of_effect(block, "")),
-                                   2);
+    text += "\neffect\n" + paragraph(fmt::format("{}, of the family {}, between XIN and XOUT.{}", about.effect,
+                                                 name_of(about.family), limits_of_effect(block, "")),
+                                     2, width);
   }
   if (!about.enriches.empty()) {
     text += fmt::format("\ncan replace\n  {}, to the bit while every further effect is neutral\n", about.enriches);
@@ -209,7 +233,7 @@ std::string card_text(const BlockType& block) {
     text += fmu_text(block);
   }
   if (!about.source.empty()) {
-    text += "\nsource\n" + wrapped(about.source, 2);
+    text += "\nsource\n" + paragraph(about.source, 2, width);
   }
   return text;
 }

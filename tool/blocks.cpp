@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include "codegen/trace/sized_block.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
+#include "support/wrapped.hpp"
 #include "tool/block_card.hpp"
 #include "tool/commands.hpp"
 
@@ -37,7 +39,7 @@ constexpr std::array groups{Group::Memory,  Group::Arithmetic, Group::Function, 
                             Group::Control, Group::Logic,      Group::Time,     Group::Rate};
 
 struct BlocksOptions {
-  std::string name;
+  std::vector<std::string> words;  ///< of a name, or to look for
   bool json = false;
   bool markdown = false;
 };
@@ -47,7 +49,9 @@ const BlockType* named_block(const std::string& name) {
   if (equal_ignoring_case(std::filesystem::path(name).extension().string(), ".fmu")) {
     return &fmu_block(name);
   }
-  for (const auto& candidate : {name, "HY_" + name, std::string(block_of_other_name(name))}) {
+  std::string joined = name;  // dead time is HY_DEAD_TIME
+  std::ranges::replace(joined, ' ', '_');
+  for (const auto& candidate : {joined, "HY_" + joined, std::string(block_of_other_name(name))}) {
     if (const BlockType* const block = find_documented_block(candidate)) {
       return block;
     }
@@ -159,12 +163,13 @@ std::string found(const std::string& word, const BlocksOptions& options) {
 }
 
 int show_blocks(const BlocksOptions& options, Console& console) {
-  if (!options.name.empty()) {
-    const BlockType* const block = named_block(options.name);
-    console.print(block == nullptr   ? found(options.name, options)
+  if (!options.words.empty()) {
+    const std::string name = fmt::format("{}", fmt::join(options.words, " "));
+    const BlockType* const block = named_block(name);
+    console.print(block == nullptr   ? found(name, options)
                   : options.json     ? card_json(*block).dump(2) + "\n"
                   : options.markdown ? block_page(*block)
-                                     : card_text(*block) + further_blocks(*block));
+                                     : card_text(*block, terminal_width(stdout)) + further_blocks(*block));
   } else if (options.json) {
     auto list = nlohmann::json::array();
     for (const BlockType* const block : documented_blocks()) {
@@ -181,8 +186,8 @@ int show_blocks(const BlocksOptions& options, Console& console) {
 
 Action add_blocks(CLI::App& app) {
   const auto options = std::make_shared<BlocksOptions>();
-  app.add_option("NAME", options->name,
-                 "The block to describe, with or without its HY_; the file of an FMU; or a word to look for.")
+  app.add_option("NAME", options->words,
+                 "The block to describe, with or without its HY_; the file of an FMU; or words to look for.")
       ->option_text(" ");
   auto* const json = app.add_flag("--json", options->json, "Prints JSON.");
   app.add_flag("--markdown", options->markdown, "Prints Markdown, as in the reference.")->excludes(json);

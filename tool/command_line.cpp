@@ -203,7 +203,8 @@ class CommandLine {
     }
     refuse_product_called_dash(*chosen.front());
     const auto& [action, results] = actions_.at(chosen.front());
-    const bool is_product = given(*chosen.front(), "--json") || out_is_standard(*chosen.front());
+    const bool is_product =
+        given(*chosen.front(), "--json") || given(*chosen.front(), "--markdown") || out_is_standard(*chosen.front());
     console.speak({.quiet = quiet_, .results = is_product ? Results::Product : results});
     return action(console);
   }

@@ -40,9 +40,9 @@ std::span<const Command> commands() {
               add_retained},
       Command{"doctor", "Says what of this machine makes a cyclic task late, and how to mend it.", add_doctor,
               Results::Findings},
-      Command{"blocks", "Lists the blocks of the library, or describes one.", add_blocks},
+      Command{"blocks", "Lists the blocks of the library, or describes one.", add_blocks, Results::Findings},
       Command{"lsp", "Serves an editor: diagnostics, hover, completion, layout.", add_lsp},
-      Command{"explain", "Explains an error by its number.", add_explain},
+      Command{"explain", "Explains an error by its number.", add_explain, Results::Findings},
       Command{"man", "Prints a manual page.", add_man},
       Command{"completion", "Prints the completion for a shell.", add_completion},
   };

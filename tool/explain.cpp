@@ -9,6 +9,7 @@
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/whole_number.hpp"
+#include "support/wrapped.hpp"
 #include "tool/commands.hpp"
 #include "tool/error_pages.hpp"
 
@@ -31,6 +32,41 @@ int number_of(std::string_view text) {
   return whole_number<int>(text).value_or(0);
 }
 
+/// Whether a line of Markdown stands by itself: a title, a row of a table.
+bool stands_alone(std::string_view line) {
+  return line.empty() || line.front() == '#' || line.front() == '|';
+}
+
+/// Whether it begins an item of a list.
+bool is_item(std::string_view line) {
+  const auto behind = std::min(line.find_first_not_of("0123456789"), line.size());
+  return line.starts_with("- ") || (behind > 0 && line.substr(behind).starts_with(". "));
+}
+
+/// Markdown with each paragraph and each item in one line, so that it can be broken to the width of a terminal.
+std::string with_flowing_paragraphs(std::string_view page) {
+  std::string text;
+  bool is_code = false;
+  bool goes_on = false;
+  while (!page.empty()) {
+    const auto end = std::min(page.find('\n'), page.size());
+    auto line = page.substr(0, end);
+    page.remove_prefix(std::min(end + 1, page.size()));
+    const bool is_fence = line.starts_with("```");
+    is_code = is_fence ? !is_code : is_code;
+    const bool stays = is_code || is_fence || stands_alone(line);
+    if (goes_on && !stays && !is_item(line)) {
+      line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+      text += ' ';
+    } else {
+      text += text.empty() ? "" : "\n";
+    }
+    text += line;
+    goes_on = !stays;
+  }
+  return text + "\n";
+}
+
 int explain(const std::string& wanted, Console& console) {
   if (wanted.empty()) {
     for (const ErrorTitle& one : error_titles()) {
@@ -45,7 +81,7 @@ int explain(const std::string& wanted, Console& console) {
     throw InputError(error::bad_usage, {}, fmt::format("There is no error {}.", wanted),
                      "`hysteron explain` lists all; an error has the form HY402.");
   }
-  console.print(page->text);
+  console.print(terminal_width(stdout) == 0 ? std::string(page->text) : with_flowing_paragraphs(page->text));
   return exit_ok;
 }
 

@@ -20,7 +20,8 @@ Exit codes: 0 the editor took leave by shutdown and exit; 1 it did not.
 
 Action add_lsp(CLI::App& app) {
   app.footer(std::string(lsp_examples));
-  return [](Console&) { return lsp::serve(std::cin, std::cout, card_text); };
+  return
+      [](Console&) { return lsp::serve(std::cin, std::cout, [](const BlockType& block) { return card_text(block); }); };
 }
 
 }  // namespace hysteron::tool

@@ -22,6 +22,7 @@
 #include "support/numbers.hpp"
 #include "support/rounded_text.hpp"
 #include "support/text_file.hpp"
+#include "support/wrapped.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
 #include "tool/picture_file.hpp"
@@ -148,6 +149,43 @@ std::string excitation_text(const Excitation& excitation) {
   return text;
 }
 
+std::size_t widest_name(const std::vector<Row>& rows) {
+  std::size_t width = std::string_view("column").size();
+  for (const Row& row : rows) {
+    width = std::max(width, row.column->name.size());
+  }
+  return width;
+}
+
+/// Of the columns of the table behind the names.
+constexpr std::size_t width_of_figures = 81;
+
+std::string columns_as_table(const std::vector<Row>& rows, std::size_t width, double step) {
+  std::string text = fmt::format("\n{:<{}}  {:<8} {:>12} {:>12} {:>11} {:>10} {:>8} {:>12}\n", "column", width, "unit",
+                                 "from", "to", "resolution", "noise", "repeats", "rests up to");
+  for (const Row& row : rows) {
+    const records::ColumnStatistics& found = row.statistics;
+    text +=
+        fmt::format("{:<{}}  {:<8} {:>12.6g} {:>12.6g} {:>11.3g} {:>10.2g} {:>7.1f}% {:>11.4g}s\n", row.column->name,
+                    width, row.column->unit.empty() ? "-" : row.column->unit, found.low, found.high, found.resolution,
+                    row.noise, 100.0 * found.repeats, static_cast<double>(found.longest_rest - 1) * step);
+  }
+  return text;
+}
+
+/// The same for a terminal in which the table has no room.
+std::string columns_in_words(const std::vector<Row>& rows, double step) {
+  std::string text;
+  for (const Row& row : rows) {
+    const records::ColumnStatistics& found = row.statistics;
+    text += fmt::format(
+        "\n{}{}\n  from {:.6g} to {:.6g}, resolution {:.3g}, noise {:.2g}, repeats {:.1f} %, rests up to {:.4g} s\n",
+        row.column->name, unit_behind(row.column->unit), found.low, found.high, found.resolution, row.noise,
+        100.0 * found.repeats, static_cast<double>(found.longest_rest - 1) * step);
+  }
+  return text;
+}
+
 std::string as_text(const Shown& shown) {
   const records::Record& record = shown.record;
   const double step = record.sample_time();
@@ -158,19 +196,10 @@ std::string as_text(const Shown& shown) {
   for (const std::string& note : record.notes()) {
     text += note + "\n";
   }
-  std::size_t width = 6;
-  for (const Row& row : shown.rows) {
-    width = std::max(width, row.column->name.size());
-  }
-  text += fmt::format("\n{:<{}}  {:<8} {:>12} {:>12} {:>11} {:>10} {:>8} {:>12}\n", "column", width, "unit", "from",
-                      "to", "resolution", "noise", "repeats", "rests up to");
-  for (const Row& row : shown.rows) {
-    const records::ColumnStatistics& found = row.statistics;
-    text +=
-        fmt::format("{:<{}}  {:<8} {:>12.6g} {:>12.6g} {:>11.3g} {:>10.2g} {:>7.1f}% {:>11.4g}s\n", row.column->name,
-                    width, row.column->unit.empty() ? "-" : row.column->unit, found.low, found.high, found.resolution,
-                    row.noise, 100.0 * found.repeats, static_cast<double>(found.longest_rest - 1) * step);
-  }
+  const std::size_t width = widest_name(shown.rows);
+  const std::size_t terminal = terminal_width(stdout);
+  text += terminal != 0 && terminal < width + width_of_figures ? columns_in_words(shown.rows, step)
+                                                               : columns_as_table(shown.rows, width, step);
   for (const records::Record::Unreadable& one : record.unreadable()) {
     text += fmt::format("{:<{}}  {}\n", one.name, width, first_sentence(one.fault));
     if (one.fault.mend != records::another_column) {

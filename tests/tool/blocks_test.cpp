@@ -37,6 +37,8 @@ TEST(Blocks, AWordIsLookedFor) {
   EXPECT_THAT(slip.out, HasSubstr("HY_STRIBECK_FRICTION"));
   EXPECT_EQ(nlohmann::json::parse(bench.shell("hysteron blocks dahl --json").out).at(0).at("name"), "HY_DAHL_FRICTION");
   EXPECT_EQ(bench.shell("hysteron blocks xyzzy").code, 2);
+  EXPECT_EQ(bench.shell("hysteron blocks dead time").out, bench.shell("hysteron blocks HY_DEAD_TIME").out);
+  EXPECT_EQ(bench.shell("hysteron blocks dead xyzzy").code, 2);
 }
 
 TEST(Blocks, CardOfOneBlock) {

@@ -96,7 +96,8 @@ TEST(Width, HelpAndErrorsFitTheTerminal) {
 TEST(Width, FindingsAndHelpFitANarrowTerminal) {
   const QuietBench bench;
   for (const char* const command :
-       {"help tune", "help export", "help doctor", "check wrong.st", "doctor --rt --seconds 0.01"}) {
+       {"help tune", "help export", "help doctor", "check wrong.st", "doctor --rt --seconds 0.01", "explain HY402",
+        "blocks HY_LAG", "blocks HY_HYSTERESIS_RO", "record log.csv"}) {
     const auto done =
         bench.shell(std::string("printf 'FUNCTION_BLOCK W\nVAR_OUTPUT Y : LREAL; END_VAR\nY := NOWHERE_DECLARED;\n"
                                 "END_FUNCTION_BLOCK\n' > wrong.st; COLUMNS=40 hysteron ") +

@@ -82,7 +82,7 @@ void dual(benchmark::State& state) {
   for (auto _ : state) {
     run<S>(signal, [](const S& output) { benchmark::DoNotOptimize(output); });
   }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(samples));
+  state.counters["work"] = static_cast<double>(samples);
 }
 
 BENCHMARK(dual<double>)->Name("dual/double");

@@ -61,7 +61,9 @@ inline bool turned(State& state, double reference) {
   return false;
 }
 
-/// Control signal for one sample of the reference.
+/// Control signal for one sample of the reference; `with_pow` is that of feedforward.st, else
+/// feedforward_without_pow.st.
+template <bool with_pow = true>
 inline double step(const Params& params, State& state, double reference, bool reset) noexcept {
   constexpr double ts = 50e-6;
   const double rate = state.started ? (reference - state.previous) / ts : 0.0;
@@ -70,8 +72,8 @@ inline double step(const Params& params, State& state, double reference, bool re
   state.started = true;
 
   const double p = branching_point ? 0.0 : state.momentum.value;
-  const double slope = params.c1 + params.c2 * std::pow(p, params.c3);  // (17)
-  const double control_rate = slope > 0.0 ? rate / slope : 0.0;         // (15)
+  const double slope = params.c1 + params.c2 * (with_pow ? std::pow(p, params.c3) : p);  // (17)
+  const double control_rate = slope > 0.0 ? rate / slope : 0.0;                          // (15)
   if (branching_point || reset) {
     state.momentum = {};
   }

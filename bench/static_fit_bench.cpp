@@ -1,5 +1,5 @@
-// The static fit by its default, variable projection. Its rival, scipy's curve_fit, is timed by static_fit_scipy.py on
-// the same points, which `hysteron_bench --write-static-map-data FOLDER` writes.
+// The static fit by its default, variable projection, and by Ipopt with all three parameters at once. bench/fit.py
+// times rivals on the same points, which `hysteron_bench --data FOLDER` writes.
 #include <benchmark/benchmark.h>
 
 #include "bench/static_map_data.hpp"
@@ -8,22 +8,41 @@
 namespace hysteron::bench {
 namespace {
 
-void static_fit(benchmark::State& state) {
+void static_fit(benchmark::State& state, StaticMapMethod method) {
   const StaticMapData data = static_map_data(static_cast<std::size_t>(state.range(0)));
   StaticMapFit fit;
   for (auto _ : state) {
-    fit = fit_static_map({.p = data.p, .M = data.M});
+    fit = fit_static_map({.p = data.p, .M = data.M}, {.method = method});
     benchmark::DoNotOptimize(fit);
   }
   if (!fit.converged()) {
     state.SkipWithError(fit.message.c_str());
   }
-  state.counters["C1"] = fit.map.C1;
-  state.counters["C2"] = fit.map.C2;
-  state.counters["C3"] = fit.map.C3;
+  state.counters["p0"] = fit.map.C1;
+  state.counters["p1"] = fit.map.C2;
+  state.counters["p2"] = fit.map.C3;
 }
 
-BENCHMARK(static_fit)->Arg(200)->Arg(10'000)->Arg(1'000'000)->Unit(benchmark::kMicrosecond);
+void variable_projection(benchmark::State& state) {
+  static_fit(state, StaticMapMethod::VariableProjection);
+}
+
+void by_ipopt(benchmark::State& state) {
+  static_fit(state, StaticMapMethod::Ipopt);
+}
+
+BENCHMARK(variable_projection)
+    ->Name("static_fit/ours")
+    ->Arg(200)
+    ->Arg(10'000)
+    ->Arg(1'000'000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(by_ipopt)
+    ->Name("static_fit/ours_by_ipopt")
+    ->Arg(200)
+    ->Arg(10'000)
+    ->Arg(1'000'000)
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace hysteron::bench

@@ -77,13 +77,23 @@ class Matiec:
         folder = Path(named) if named else Path(found).resolve().parent if found else None
         return cls(folder.resolve(), options) if folder and (folder / "iec2c").exists() else None
 
+    def command(self, source, folder):
+        """Writes POUS.c and its headers into the folder."""
+        return [self.folder / "iec2c", *self.options, "-I", self.folder / "lib", "-T", folder, source]
+
+    def translate(self, source, folder):
+        """Runs the command; a sentence where the text is refused, else None."""
+        done = subprocess.run(self.command(source, folder), capture_output=True, text=True, errors="replace")
+        if done.returncode:
+            return re.sub(r"^.*?: error: ", "", first_line(done.stderr + done.stdout, "refused"))
+        return None
+
     def host(self, source, block, inputs, outputs, folder, step_ns=0):
         """A program that runs the block over rows of numbers; or a sentence why there is none. Inputs and outputs are
         names with their types; `step_ns` is the time from one row to the next."""
-        done = subprocess.run([self.folder / "iec2c", *self.options, "-I", self.folder / "lib", "-T", folder, source],
-                              capture_output=True, text=True, errors="replace")
-        if done.returncode:
-            return re.sub(r"^.*?: error: ", "", first_line(done.stderr + done.stdout, "refused"))
+        refused = self.translate(source, folder)
+        if refused:
+            return refused
 
         def member(name):
             return re.sub(r"^(\w+)\[(\d+)\]$", r"\1.value.table[\2]", name) if "[" in name else name + ".value"
@@ -111,18 +121,29 @@ class Strucpp:
         named = os.environ.get("HYSTERON_STRUCPP")
         return cls(Path(named).resolve()) if named and (Path(named) / "dist/node/cli.js").exists() else None
 
-    def host(self, source, block, inputs, outputs, folder, step_ns=0):
-        """As Matiec.host."""
+    def command(self, source, folder):
+        """Writes block.cpp and what else it needs into the folder."""
         # Of the libraries that come with it only those of the standard: others define what a user's text defines.
         standard = folder / "libraries"
         standard.mkdir()
         for one in self.folder.glob("libs/iec-*"):
             shutil.copy(one, standard)
-        done = subprocess.run(["node", self.folder / "dist/node/cli.js", source, "--no-default-libs", "-L", standard, "-o",
-                               folder / "block.cpp"], capture_output=True, text=True, errors="replace")
+        return ["node", self.folder / "dist/node/cli.js", source, "--no-default-libs", "-L", standard, "-o",
+                folder / "block.cpp"]
+
+    def translate(self, source, folder):
+        """As Matiec.translate."""
+        done = subprocess.run(self.command(source, folder), capture_output=True, text=True, errors="replace")
         errors = re.findall(r": error: (.*)", done.stderr + done.stdout)
         if done.returncode or errors:
             return errors[0] if errors else "refused"
+        return None
+
+    def host(self, source, block, inputs, outputs, folder, step_ns=0):
+        """As Matiec.host."""
+        refused = self.translate(source, folder)
+        if refused:
+            return refused
 
         def member(name):
             return re.sub(r"\[(\d+)\]", r".at(\1)", name)

@@ -36,26 +36,58 @@ void scan(Model& model, Fit& best, Index first, Index count) {
   }
 }
 
-/// One unknown, times a factor.
+/// One unknown, times a factor or by a shift.
 struct TrialStep {
   Index unknown = 0;
   double factor = 1.0;
+  double shift = 0.0;
+};
+
+/// The unknowns of a set that are instants.
+std::vector<Index> instants_of(const Model& model, const Variant& variant) {
+  std::vector<Index> result;
+  for (std::size_t k = 0; k < variant.further.size(); ++k) {
+    const std::string& path = variant.further[k].path;
+    const auto owner = std::ranges::find_if(
+        variant.effects, [&](const Applied& one) { return std::ranges::find(one.paths, path) != one.paths.end(); });
+    if (owner != variant.effects.end() && owner->parameter(path).role == Role::Instant) {
+      result.push_back(model.first_further() + static_cast<Index>(k));
+    }
+  }
+  return result;
+}
+
+/// What a pattern search moves.
+struct Pattern {
+  Index first = 0;
+  Index count = 0;
+  double finest = 0.0;            ///< the last step, as a share
+  std::vector<Index> instants{};  ///< these by whole samples: a derivative sees the one sample beside an instant
+  double sample = 0.0;            ///< in s
 };
 
 /// Where the output jumps with a parameter, derivatives do not see the way: single steps by trial, then a last fit.
-/// `finest` is the last step, as a share.
-void pattern_search(Model& model, Fit& best, Index first, Index count, double finest) {
+void pattern_search(Model& model, Fit& best, const Pattern& pattern) {
   std::vector<TrialStep> trials;
+  const auto is_moved = [&](Index j) { return j >= pattern.first && j < pattern.first + pattern.count; };
   for (const double share : {0.08, 0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4}) {
-    for (Index j = first; j < first + count && share >= finest; ++j) {
+    for (Index j = pattern.first; is_moved(j) && share >= pattern.finest; ++j) {
       trials.push_back({.unknown = j, .factor = 1.0 + share});
       trials.push_back({.unknown = j, .factor = 1.0 - share});
     }
   }
+  for (const double samples : {4.0, 2.0, 1.0}) {
+    for (const Index j : pattern.instants) {
+      if (is_moved(j)) {
+        trials.push_back({.unknown = j, .shift = samples * pattern.sample});
+        trials.push_back({.unknown = j, .shift = -samples * pattern.sample});
+      }
+    }
+  }
   const auto moved_by = [&](const TrialStep& trial) {
     VectorXd x = best.x;
-    x[trial.unknown] =
-        std::clamp(x[trial.unknown] * trial.factor, model.lower()[trial.unknown], model.upper()[trial.unknown]);
+    const Index j = trial.unknown;
+    x[j] = std::clamp(x[j] * trial.factor + trial.shift, model.lower()[j], model.upper()[j]);
     return x;
   };
   const auto foresee_from = [&](std::size_t next) {
@@ -197,11 +229,19 @@ void finish(const Task& task, Explanation& one, const FinishOptions& options) {
   one.fit = fit(model, one.fit.x,
                 {.iterations = thoroughly ? 60 : 20, .tolerance = thoroughly ? 1e-6 : 1e-5, .stop = options.stop});
   const bool is_cut = options.stop && options.stop();  // single steps take as long again
+  Pattern pattern{.first = first,
+                  .count = count,
+                  .finest = 0.003,
+                  .instants = instants_of(model, one.variant),
+                  .sample = task.records.front().sample_time()};
   if (own.has_gap() && !is_cut) {
     // A hundred steps from 0, a quantum that is off by a thousandth is off by a tenth of itself.
-    pattern_search(model, one.fit, 0, first + count, thoroughly && own.has(Role::Quantum) ? 1e-4 : 0.003);
+    pattern.first = 0;
+    pattern.count = first + count;
+    pattern.finest = thoroughly && own.has(Role::Quantum) ? 1e-4 : 0.003;
+    pattern_search(model, one.fit, pattern);
   } else if (thoroughly && !is_cut) {
-    pattern_search(model, one.fit, first, count, 0.003);
+    pattern_search(model, one.fit, pattern);
   }
   keep_starts(one, model);
 }

@@ -80,4 +80,18 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
   return nearest(name, candidates);
 }
 
+std::string_view meant_member(std::string_view name, std::span<const std::string> members) {
+  if (const std::string_view near = nearest_name(name, members); !near.empty()) {
+    return near;
+  }
+  const std::string wanted = in_capitals(name);
+  const auto holds = [&](const std::string& one) {
+    const std::string member = in_capitals(one);
+    return member.starts_with(wanted) || member.ends_with(wanted);
+  };
+  const auto first = std::ranges::find_if(members, holds);
+  return first != members.end() && std::ranges::count_if(members, holds) == 1 ? std::string_view(*first)
+                                                                              : std::string_view();
+}
+
 }  // namespace hysteron

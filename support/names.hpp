@@ -29,4 +29,8 @@ namespace hysteron {
 [[nodiscard]] std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates);
 [[nodiscard]] std::string_view nearest_name(std::string_view name, std::span<const std::string> candidates);
 
+/// Of the pins or members of one thing, the one that is meant by a name: the nearest, else the only one that begins or
+/// ends with it, as XIN does with IN, and T1 with T. Empty where there is none.
+[[nodiscard]] std::string_view meant_member(std::string_view name, std::span<const std::string> members);
+
 }  // namespace hysteron

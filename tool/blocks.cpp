@@ -105,6 +105,10 @@ std::string further_blocks(const BlockType& shown) {
 }
 
 [[noreturn]] void refuse_unknown(const std::string& name) {
+  if (const std::string first = name.substr(0, name.find(' ')); first != name && named_block(first) != nullptr) {
+    throw InputError(error::unknown_block, {}, fmt::format("There is no block {} in the library.", name),
+                     fmt::format("ask for one at a time: `hysteron blocks {}`.", first));
+  }
   std::vector<std::string_view> known;
   for (const BlockType* const block : documented_blocks()) {
     known.push_back(block->about.name);

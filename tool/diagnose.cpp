@@ -104,6 +104,8 @@ void prove_outputs(const DiagnoseOptions& options) {
 }
 
 int diagnose(DiagnoseOptions options, Console& console) {
+  require_parameters(options.diagram, "diagnose",
+                     "tune the diagram first, by `hysteron tune`, and name the file that it writes.");
   Diagnostics warnings;
   prove_outputs(options);
   if (options.trace.empty() != options.controller.file.empty()) {
@@ -162,7 +164,7 @@ Action add_diagnose(CLI::App& app) {
       ->option_text("LOG.csv")
       ->allow_extra_args(false);
   add_record_options(app, options->record);
-  app.add_option("--params", options->diagram.parameters, "Its tuned parameters.")->required()->option_text("P.toml");
+  app.add_option("--params", options->diagram.parameters, "Its tuned parameters.")->option_text("P.toml");
   app.add_option("--out", options->output, "A folder for what is found.")->required()->option_text("DIR");
   app.add_option("--top", options->diagram.top, "The block to take, where the file has several that no other contains.")
       ->option_text("NAME");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "codegen/compile.hpp"
@@ -31,6 +32,10 @@ void add_fmu_options(CLI::App& options);
 
 /// Compiles the diagram and sets its parameters. Throws InputError with all errors; adds warnings.
 [[nodiscard]] Program load_diagram(const DiagramOptions& options, Diagnostics& warnings);
+
+/// Refuses a command without --params: what such a file is, and its first lines for this very diagram. `advice` says
+/// what to do with it. Throws InputError.
+void require_parameters(const DiagramOptions& options, std::string_view command, std::string_view advice);
 
 /// Sets the parameters of a file; without a name nothing is set. Throws InputError.
 void set_parameters_of(const std::string& file, Program& program);

@@ -75,6 +75,7 @@ std::string diagnose_command(const TuneOptions& options) {
 }
 
 int tune(const TuneOptions& options, Console& console) {
+  require_parameters(options.diagram, "tune", "write one, and name it.");
   const auto file = parameters::read_parameter_file(options.diagram.parameters);
   if (file.goal.is_given()) {
     return tune_goal(options, file, console);
@@ -140,7 +141,6 @@ Action add_tune(CLI::App& app) {
   add_record_options(app, options->record);
   add_fmu_options(app);
   app.add_option("--params", options->diagram.parameters, "Parameters, with those to be fitted in tables [fit].")
-      ->required()
       ->option_text("P.toml");
   app.add_option("--out", options->output, "The same with fitted values.")->required()->option_text("TUNED.toml");
   app.add_option("--report", options->report, "A folder for report.html, report.json and residuals.csv.")

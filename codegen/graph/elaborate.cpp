@@ -244,6 +244,7 @@ void Elaborator::elaborate_call(const Instance& instance, std::vector<Part>& par
   for (const language::Argument& argument : call.arguments) {
     const Pin pin = find_pin(declared, argument.pin);
     if (!pin.found) {
+      part.is_misnamed = true;
       continue;
     }
     part.given.push_back(pin.field.name);
@@ -380,7 +381,7 @@ Wire Elaborator::resolve(const Instance& instance, const std::vector<Part>& part
   }
   error(error::unknown_pin, reference.pin.span,
         fmt::format("{} has no output '{}'", type_of(declared), reference.pin.text),
-        fmt::format("Its outputs are {}.", fmt::join(pin_names(declared, false), ", ")));
+        one_of_pins(reference.pin.text, pin_names(declared, false), "outputs"));
   return {};
 }
 
@@ -391,7 +392,9 @@ void Elaborator::unknown_name(const Definition& definition, const language::Name
   }
   const auto near = nearest_name(name.text, known);
   error(error::unknown_name, name.span, fmt::format("'{}' is not declared", name.text),
-        near.empty() ? "Declare it in a VAR section." : fmt::format("Did you mean {}?", near));
+        near.empty() && equal_ignoring_case(name.text, "PI") ? "Write 3.141592653589793."
+        : near.empty()                                       ? "Declare it in a VAR section."
+                                                             : fmt::format("Did you mean {}?", near));
 }
 
 void Elaborator::close(const Instance& instance, std::size_t variable, const Part& part) {

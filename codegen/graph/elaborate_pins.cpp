@@ -93,8 +93,15 @@ Pin Elaborator::find_pin(const Declared& declared, const language::Name& name) {
   }
   std::vector<std::string> names = pin_names(declared, true);
   error(error::unknown_pin, name.span, fmt::format("{} has no input '{}'", type_of(declared), name.text),
-        fmt::format("Its inputs are {}.", fmt::join(names, ", ")));
+        one_of_pins(name.text, names, "inputs"));
   return {};
+}
+
+std::string Elaborator::one_of_pins(std::string_view name, const std::vector<std::string>& pins,
+                                    std::string_view kind) {
+  const std::string_view meant = meant_member(name, pins);
+  return fmt::format("{}Its {} are {}.", meant.empty() ? std::string() : fmt::format("Did you mean {}? ", meant), kind,
+                     fmt::join(pins, ", "));
 }
 
 std::string_view Elaborator::type_of(const Declared& declared) {
@@ -237,7 +244,9 @@ Wire Elaborator::unconnected(const std::string& path, const Declared& declared, 
                                 .span = declared.variable->name.span});
     return {Wire::From::Parameter, field.type, 0, static_cast<std::uint32_t>(open_parameters_.size() - 1)};
   }
-  if (field.required && part.called && std::ranges::find(part.given, field.name) == part.given.end()) {
+  // Beside a pin that does not exist, what is not connected is the same mistake.
+  if (field.required && part.called && !part.is_misnamed &&
+      std::ranges::find(part.given, field.name) == part.given.end()) {
     error(error::unconnected_input, part.call, fmt::format("{}.{} is not connected", declared.field.name, field.name),
           fmt::format("Connect it: {}({} := …). {}", declared.field.name, field.name, field.meaning));
   }

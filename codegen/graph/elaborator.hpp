@@ -38,6 +38,7 @@ struct Part {
   bool called = false;
   Span call{};
   std::vector<std::string_view> given{};  ///< the pins that the call names, also where the value is refused
+  bool is_misnamed = false;               ///< the call names a pin that does not exist
 };
 
 struct Pin {
@@ -89,6 +90,8 @@ class Elaborator {
   void discretise(const Instance& instance, const Declared& declared, Part& part, Rate rate);
   Pin find_pin(const Declared& declared, const language::Name& name);
   std::vector<std::string> pin_names(const Declared& declared, bool inputs);
+  /// Which of the pins, `inputs` or `outputs`, is meant by a name, and which there are.
+  static std::string one_of_pins(std::string_view name, const std::vector<std::string>& pins, std::string_view kind);
   /// Its name without sizes.
   static std::string_view type_of(const Declared& declared);
   Wire& pin_wire(const Declared& declared, const Part& part, const Pin& pin);

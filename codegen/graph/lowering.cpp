@@ -219,6 +219,43 @@ std::string Lowering::meant_brackets(const language::Binary& binary, Type left, 
   return fmt::format("{} is done before the operation on bits. Write {}.", sign, meant);
 }
 
+bool Lowering::literals_alone(language::ExpressionId id, std::vector<language::Span>& literals, bool& divides) const {
+  const auto& node = source_.expressions[id].node;
+  if (const auto* const literal = std::get_if<language::IntLiteral>(&node)) {
+    const auto text = source_.text_of(span_of(id));
+    literals.push_back(span_of(id));
+    return literal->value >= 0 && text.find('#') == std::string_view::npos;
+  }
+  if (const auto* const unary = std::get_if<language::Unary>(&node)) {
+    return unary->op == Operator::Negate && literals_alone(unary->operand, literals, divides);
+  }
+  const auto* const binary = std::get_if<language::Binary>(&node);
+  divides = divides || (binary != nullptr && binary->op == Operator::Divide);
+  return binary != nullptr && binary->op != Operator::Modulo && literals_alone(binary->left, literals, divides) &&
+         literals_alone(binary->right, literals, divides);
+}
+
+std::string Lowering::meant_real(const language::Binary& binary, Type left, Type right) const {
+  const bool is_left = left == Type::Int && right == Type::Real;
+  if (!is_left && (left != Type::Real || right != Type::Int)) {
+    return {};
+  }
+  const language::ExpressionId whole = is_left ? binary.left : binary.right;
+  std::vector<language::Span> literals;
+  bool divides = false;
+  if (!literals_alone(whole, literals, divides)) {
+    return {};
+  }
+  const language::Span span = span_of(whole);
+  const std::string before(source_.text_of(span));
+  std::string text = before;
+  for (auto one = literals.rbegin(); one != literals.rend(); ++one) {
+    text.insert(one->offset + one->length - span.offset, ".0");
+  }
+  return divides ? fmt::format("Write {}: of whole numbers, {} is cut to a whole one.", text, before)
+                 : fmt::format("Write {}: no number is converted silently.", text);
+}
+
 Wire Lowering::lower_unary(const language::Unary& unary, language::Span span) {
   const Wire operand = expression(unary.operand);
   if (operand.from == Wire::From::Nothing) {
@@ -332,7 +369,9 @@ Wire Lowering::lower_binary(const language::Binary& binary, language::Span span)
       if (row.truth) {
         taken.push_back(Type::Word);
       }
-      return mismatch(span, row.text, {left.type, right.type}, taken, meant_brackets(binary, left.type, right.type));
+      const std::string brackets = meant_brackets(binary, left.type, right.type);
+      return mismatch(span, row.text, {left.type, right.type}, taken,
+                      brackets.empty() && row.real ? meant_real(binary, left.type, right.type) : brackets);
     }
     const Wire result = row.swapped ? apply(*op, {right, left}, span) : apply(*op, {left, right}, span);
     return row.op == Operator::Equal && left.type == Type::Bool ? apply(Op::Not, {result}, span) : result;

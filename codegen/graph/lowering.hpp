@@ -86,6 +86,11 @@ class Lowering {
                 const std::vector<Type>& taken, const std::string& hint = {});
   /// The mend for W AND 16#6F = 16#27, where the comparison is done first; empty where it is not that.
   [[nodiscard]] std::string meant_brackets(const language::Binary& binary, Type left, Type right) const;
+  /// The mend for U * 1 and U * (1/2): the whole numbers of the one side as LREAL; empty where it is not that.
+  [[nodiscard]] std::string meant_real(const language::Binary& binary, Type left, Type right) const;
+  /// The literals of an expression of whole numbers alone, in the order of the text; false where it is none.
+  [[nodiscard]] bool literals_alone(language::ExpressionId id, std::vector<language::Span>& literals,
+                                    bool& divides) const;
   [[nodiscard]] language::Span span_of(language::ExpressionId id) const { return source_.expressions[id].span; }
 
   GraphBuilder& builder_;

@@ -8,6 +8,7 @@
 
 #include "codegen/graph/lowering.hpp"
 #include "support/errors.hpp"
+#include "support/names.hpp"
 
 namespace hysteron {
 namespace {
@@ -34,6 +35,34 @@ constexpr std::array formal_names{Formal{"EXPT", {"IN1", "IN2"}},
                                   Formal{"SHR", {"IN", "N"}},
                                   Formal{"MUX", {"K", "IN0", "IN1", "IN2", "IN3", "IN4", "IN5", "IN6", "IN7"}}};
 constexpr std::array<std::string_view, 1> only_operand{"IN"};
+
+/// What a function of another language is here.
+struct Foreign {
+  std::string_view name;
+  std::string_view here;
+};
+constexpr std::array foreign_functions{Foreign{"POW", "EXPT(base, exponent), or base ** exponent"},
+                                       Foreign{"POWER", "EXPT(base, exponent), or base ** exponent"},
+                                       Foreign{"FABS", "ABS"},
+                                       Foreign{"LOG10", "LOG"},
+                                       Foreign{"SQR", "X * X; a square root is SQRT"},
+                                       Foreign{"SGN", "an instance of HY_SIGN"},
+                                       Foreign{"SIGN", "an instance of HY_SIGN"},
+                                       Foreign{"FLOOR", "DINT_TO_LREAL(TRUNC(X)), towards 0"},
+                                       Foreign{"ROUND", "DINT_TO_LREAL(LREAL_TO_DINT(X))"},
+                                       Foreign{"MOD", "A MOD B, of whole numbers"},
+                                       Foreign{"FMOD", "A MOD B, of whole numbers"},
+                                       Foreign{"SINH", "(EXP(X) - EXP(-X)) / 2.0"},
+                                       Foreign{"COSH", "(EXP(X) + EXP(-X)) / 2.0"},
+                                       Foreign{"CLAMP", "LIMIT(low, X, high)"},
+                                       Foreign{"IF", "SEL(CONDITION, IF_FALSE, IF_TRUE)"}};
+
+/// `Write EXPT(…). `; empty where the name tells nothing.
+std::string meant_function(std::string_view name) {
+  const auto known =
+      std::ranges::find_if(foreign_functions, [&](const Foreign& one) { return equal_ignoring_case(one.name, name); });
+  return known == foreign_functions.end() ? std::string() : fmt::format("Write {}. ", known->here);
+}
 
 Op select_for(Type type) {
   switch (type) {
@@ -302,8 +331,9 @@ Wire Lowering::lower_call(const language::FunctionCall& call, language::Span spa
     }
   }
   report_(error::unknown_function, call.function.span, fmt::format("there is no function '{}'", call.function.text),
-          "Known: ABS SQRT LN LOG EXP EXPT SIN COS TAN ASIN ACOS ATAN ATAN2 TRUNC MIN MAX LIMIT SEL MUX SHL SHR "
-          "DINT_TO_LREAL LREAL_TO_DINT BOOL_TO_DINT WORD_TO_DINT DINT_TO_WORD.");
+          meant_function(call.function.text) +
+              "Known: ABS SQRT LN LOG EXP EXPT SIN COS TAN ASIN ACOS ATAN ATAN2 TRUNC MIN MAX LIMIT SEL MUX SHL SHR "
+              "DINT_TO_LREAL LREAL_TO_DINT BOOL_TO_DINT WORD_TO_DINT DINT_TO_WORD.");
   return {};
 }
 

@@ -77,6 +77,8 @@ std::string_view mend_of_illegal(char c) {
       return "Write OR.";
     case '^':
       return "Write ** for a power; pointers are not part of a diagram.";
+    case '?':
+      return "To take one of two values write SEL(CONDITION, IF_FALSE, IF_TRUE).";
     case '}':
       return "Remove it; pragmas are not part of a diagram.";
     default:
@@ -331,6 +333,11 @@ Token Lexer::address() {
   }
   if (start > 0 && text_[start - 1] == '.') {  // W.%X3 is a part of W, and no address
     refuse_part(start);
+    return token(Symbol::Refused, start);
+  }
+  if (at_ == start + 1) {
+    error(error::illegal_character, start, 1, "% stands for no operation.",
+          "Write MOD for the remainder of whole numbers; an address such as %IX0.0 is no part of a diagram.");
     return token(Symbol::Refused, start);
   }
   error(error::direct_address, start, at_ - start,

@@ -137,7 +137,10 @@ ExpressionId Parser::primary(bool behind_minus) {
   if (!is_sign && keyword_for_name("a value")) {
     return no_expression;
   }
-  unexpected("a value", "Put a number, a name, INSTANCE.PIN or a function here.");
+  const auto twice = [&](Symbol symbol) { return is(symbol) && last_.symbol == symbol && last_.end() == now().offset; };
+  unexpected("a value", twice(Symbol::Equal)       ? "Write = to compare, once; := assigns."
+                        : twice(Symbol::Ampersand) ? "Write AND, or & once."
+                                                   : "Put a number, a name, INSTANCE.PIN or a function here.");
   return no_expression;
 }
 

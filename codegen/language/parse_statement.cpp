@@ -182,7 +182,8 @@ bool Parser::arguments(std::vector<Argument>& list) {
       error(error::argument_form, span_of(place),
             compares ? fmt::format("{} does not wire a pin.", described(place))
                      : "This argument does not say which pin it is for.",
-            "Write PIN := value.");
+            compares ? fmt::format("Write {} := value.", text_of(span_of(now())))
+                     : fmt::format("Write PIN := {}, with the name of the pin.", text_of(span_of(now()))));
       return false;
     }
     if (!is(Symbol::Identifier) && !is(Symbol::Keyword)) {

@@ -101,10 +101,12 @@ void Parser::part_with_body(const TextPart& part, body::Library& library) {
 
 void Parser::outside() {
   const bool unit = is(Keyword::Unit) || is(Keyword::UnitEnd);
+  const bool is_program = unit && same_name(text_of(span_of(now())), "PROGRAM");
   error(error::outside_function_block, span_of(now()),
         fmt::format("{} stands outside of a FUNCTION_BLOCK.", described(now())),
-        unit ? "A diagram file holds FUNCTION_BLOCKs only; move the rest into a file of its own."
-             : "Move it between FUNCTION_BLOCK and END_FUNCTION_BLOCK, or remove it.");
+        is_program ? "Make it a block with inputs and outputs: FUNCTION_BLOCK … END_FUNCTION_BLOCK."
+        : unit     ? "A diagram file holds FUNCTION_BLOCKs only; move the rest into a file of its own."
+                   : "Move it between FUNCTION_BLOCK and END_FUNCTION_BLOCK, or remove it.");
   while (!is(Symbol::End) && !is(Keyword::FunctionBlock)) {
     advance();
   }
@@ -324,12 +326,29 @@ bool Parser::expect_semicolon() {
       is(Symbol::Identifier) && (ahead(1).symbol == Symbol::Assign || ahead(1).symbol == Symbol::LeftParenthesis ||
                                  ahead(1).symbol == Symbol::Colon);
   if (is_end || is_next || (line_ends && starts_anew)) {
+    if (reporter_.has_error_within(last_.end(), now().offset)) {
+      return line_ends;  // what was refused stands between: of this line nothing more is read
+    }
     error(error::missing_semicolon, {last_.end(), 1},
           fmt::format("A semicolon is missing behind {}.", described(last_)), "Write ; here.");
     return true;
   }
-  unexpected("`;`", "Put `;` here, or remove what is too much.");
+  const auto decimals = is_decimal_comma() ? text_of(span_of(ahead(1))) : std::string_view();
+  unexpected("`;`", !decimals.empty()
+                        ? fmt::format("Write {}.{}: the decimal mark is a point.", text_of(span_of(last_)), decimals)
+                    : is(Symbol::Arrow) ? "Write >= to compare."
+                                        : "Put `;` here, or remove what is too much.");
   return false;
+}
+
+/// Whether now() is the comma of 1,5.
+bool Parser::is_decimal_comma() {
+  const auto are_digits = [](std::string_view text) {
+    return std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+  };
+  return is(Symbol::Comma) && last_.symbol == Symbol::Number && last_.end() == now().offset &&
+         ahead(1).symbol == Symbol::Number && ahead(1).offset == now().end() && are_digits(text_of(span_of(last_))) &&
+         are_digits(text_of(span_of(ahead(1))));
 }
 
 /// Skips to behind the next semicolon, or to what ends or begins a part of a block.

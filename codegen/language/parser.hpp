@@ -87,6 +87,7 @@ class Parser {
   bool expect(Symbol symbol, std::string_view wanted);
   bool expect_name(Name& name, std::string_view wanted);
   bool expect_semicolon();
+  [[nodiscard]] bool is_decimal_comma();
   void recover();
   [[nodiscard]] bool starts_section() const;
   [[nodiscard]] bool ends_block() const;

@@ -51,7 +51,7 @@ TEST(CommandLine, SlipsAreExplained) {
   EXPECT_THAT(refused("hysteron run plant.st --in a.csv --out"), HasSubstr("hysteron run: --out needs a value."));
   EXPECT_THAT(refused("hysteron generate plant.st --target ada --out g"), HasSubstr("There is no target ada."));
   EXPECT_THAT(refused("hysteron check"), HasSubstr("FILE"));
-  EXPECT_THAT(refused("hysteron blocks HY_LAG HY_GAIN"), HasSubstr("does not take the argument HY_GAIN"));
+  EXPECT_THAT(refused("hysteron blocks HY_LAG HY_GAIN"), HasSubstr("ask for one at a time: `hysteron blocks HY_LAG`"));
 }
 
 /// An empty value is most often a variable of the shell that is not set: no command goes on as if the option were not

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "support/numbers.hpp"
@@ -91,6 +92,31 @@ class Tune : public testing::Test {
   }
   test::Workbench bench;
 };
+
+/// What is shown where --params is missing is such a file, for this very diagram: it works as it stands.
+TEST_F(Tune, ShowsTheFirstLinesOfAParameterFileWhereItIsMissing) {
+  for (const char* const command : {"tune", "diagnose"}) {
+    const auto refused = bench.shell(fmt::format("hysteron {} plant.st --log log.csv --out made", command));
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("--params is missing, the file that names the parameters to be fitted"));
+    std::istringstream said(refused.err);
+    std::string lines;
+    for (std::string line; std::getline(said, line);) {
+      lines += line.starts_with("note: ") ? line.substr(6) + "\n" : "";
+    }
+    EXPECT_EQ(lines, "[fit.AMP]\nK = {}\n");
+    bench.write("p.toml", lines);
+  }
+  const auto tuned = bench.shell("hysteron tune plant.st --log log.csv --params p.toml --out tuned.toml");
+  EXPECT_EQ(tuned.code, 0) << tuned.err;
+  EXPECT_THAT(bench.read("tuned.toml"), HasSubstr("[fit.AMP]"));
+  // A diagram with nothing to fit is told so.
+  bench.write("none.st",
+              "FUNCTION_BLOCK N (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR Y := 2.0 * U; "
+              "END_FUNCTION_BLOCK");
+  EXPECT_THAT(bench.shell("hysteron tune none.st --log log.csv --out t.toml").err,
+              HasSubstr("a parameter that a fit can move"));
+}
 
 TEST_F(Tune, PrintsAndWritesWhatItFound) {
   const auto outcome =

@@ -31,7 +31,7 @@ std::string one_of_members(const Place& place, std::string_view wanted) {
   if (names.empty()) {
     return fmt::format("'{}' has no members: write it alone.", place.path);
   }
-  const std::string_view near = nearest_name(wanted, names);
+  const std::string_view near = meant_member(wanted, names);
   return near.empty() ? fmt::format("There are {}.", fmt::join(names, ", ")) : fmt::format("Did you mean {}?", near);
 }
 

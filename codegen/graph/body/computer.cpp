@@ -124,6 +124,24 @@ Value Computer::fit(const Value& value, Plain type) {
   return result;
 }
 
+std::string Computer::conversion_in_words(const Value& value, Plain type) const {
+  const PlainInfo& from = info(value.type);
+  const PlainInfo& to = info(type);
+  double number = 0.0;
+  const bool is_known = constant(value, number);
+  // A number as a TIME is milliseconds: whoever writes a plain one means seconds as often.
+  if (to.family == Family::Duration && value.loose && is_known && std::abs(number) < 1e9 &&
+      (number == 0.0 || std::abs(number) >= 1e-3)) {
+    return fmt::format("Write it with its unit: T#{0}s, or T#{0}ms.", number_text(number));
+  }
+  // So is a TIME as a number, and a time of a block is seconds.
+  if (from.family == Family::Duration && is_number(type) && is_known) {
+    return fmt::format("Write {}, the time in s; {}_TO_{}( … ) would give it in ms.", number_text(1e-3 * number),
+                       from.name, to.name);
+  }
+  return fmt::format("Convert it: {}_TO_{}( … ).", from.name, to.name);
+}
+
 Value Computer::assignable(const Value& value, Plain type, const std::string& target) {
   if (!value.valid()) {
     return value;
@@ -136,13 +154,7 @@ Value Computer::assignable(const Value& value, Plain type, const std::string& ta
                                value.loose ? "a literal that it does not hold" : from.name),
                    std::move(mend));
   };
-  double number = 0.0;
-  // A number as a TIME is milliseconds: whoever writes a plain one means seconds as often.
-  const bool is_plain_time = to.family == Family::Duration && value.loose && constant(value, number) &&
-                             std::abs(number) < 1e9 && (number == 0.0 || std::abs(number) >= 1e-3);
-  const std::string conversion = is_plain_time
-                                     ? fmt::format("Write it with its unit: T#{0}s, or T#{0}ms.", number_text(number))
-                                     : fmt::format("Convert it: {}_TO_{}( … ).", from.name, to.name);
+  const std::string conversion = conversion_in_words(value, type);
   if (value.type == type) {
     return fit(value, type);
   }

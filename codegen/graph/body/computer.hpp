@@ -53,6 +53,8 @@ class Computer {
 
   /// The value as a type keeps it: integers wrap to its width, a REAL is rounded. Of one family.
   Value fit(const Value& value, Plain type);
+  /// How a value becomes one of a type, as a mend.
+  [[nodiscard]] std::string conversion_in_words(const Value& value, Plain type) const;
   /// What an assignment to a variable of the type takes; invalid, and an error, where it takes none.
   Value assignable(const Value& value, Plain type, const std::string& target);
   /// X_TO_Y.

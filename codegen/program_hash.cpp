@@ -1,8 +1,10 @@
 #include "codegen/program_hash.hpp"
 
-#include <fmt/format.h>
-
-#include <iterator>
+#include <array>
+#include <charconv>
+#include <string>
+#include <string_view>
+#include <type_traits>
 
 #include "codegen/cosimulation/fmu.hpp"
 #include "support/numbers.hpp"
@@ -10,47 +12,70 @@
 
 namespace hysteron {
 
+namespace {
+
+/// The text that is hashed: words and whole numbers, by hand, since a large diagram has a million of them.
+class HashedText {
+ public:
+  HashedText& operator<<(std::string_view text) {
+    text_ += text;
+    return *this;
+  }
+  template <class Integer>
+  requires std::is_integral_v<Integer> HashedText& operator<<(Integer number) {
+    std::array<char, 24> digits{};
+    const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), number);
+    text_.append(digits.data(), written.ptr);
+    return *this;
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace
+
 std::string program_hash(const Program& program) {
   const Graph& graph = program.graph;
-  fmt::memory_buffer text;
-  auto out = std::back_inserter(text);
+  HashedText text;
   const auto wire = [&](const Wire& one) {
-    fmt::format_to(out, " {}:{}:{}", static_cast<int>(one.from), one.index, one.port);
+    text << " " << static_cast<int>(one.from) << ":" << one.index << ":" << one.port;
     if (one.from == Wire::From::Literal) {
-      fmt::format_to(out, "={}", number_text(graph.literals[one.index]));
+      text << "=" << number_text(graph.literals[one.index]);
     }
   };
-  fmt::format_to(out, "ts {}\n", graph.sample_time_ns);
+  text << "ts " << graph.sample_time_ns << "\n";
   for (const Port& input : graph.inputs) {
-    fmt::format_to(out, "input {} {}\n", language::upper(input.name), static_cast<int>(input.type));
+    text << "input " << language::upper(input.name) << " " << static_cast<int>(input.type) << "\n";
   }
   for (const Parameter& parameter : graph.parameters) {
-    fmt::format_to(out, "parameter {}", parameter.path);
+    text << "parameter " << parameter.path;
     for (const double value : parameter.value) {
-      fmt::format_to(out, " {}", number_text(value));
+      text << " " << number_text(value);
     }
-    fmt::format_to(out, "\n");
+    text << "\n";
   }
   for (const Node& node : graph.nodes) {
-    fmt::format_to(out, "node {} {} {}", node.block != nullptr ? node.block->about.name : info(node.op).name,
-                   node.rate.every, node.rate.phase);
+    text << "node " << (node.block != nullptr ? node.block->about.name : info(node.op).name) << " " << node.rate.every
+         << " " << node.rate.phase;
     if (node.block != nullptr && node.block->fmu != nullptr) {
-      fmt::format_to(out, " {}", node.block->fmu->hash());
+      text << " " << node.block->fmu->hash();
     }
     for (std::uint32_t pin = 0; pin < node.wire_count; ++pin) {
       wire(graph.wire(node, pin));
     }
-    fmt::format_to(out, "\n");
+    text << "\n";
   }
   for (const InitialState& given : graph.initial_states) {
-    fmt::format_to(out, "initial {} {} {}\n", given.node, given.state, number_text(given.value));
+    text << "initial " << given.node << " " << given.state << " " << number_text(given.value) << "\n";
   }
   for (const Port& output : graph.outputs) {
-    fmt::format_to(out, "output {} {}", language::upper(output.name), static_cast<int>(output.type));
+    text << "output " << language::upper(output.name) << " " << static_cast<int>(output.type);
     wire(output.wire);
-    fmt::format_to(out, "\n");
+    text << "\n";
   }
-  return sha256({text.data(), text.size()}).substr(0, 16);
+  return sha256(text.text()).substr(0, 16);
 }
 
 }  // namespace hysteron

@@ -5,7 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
+#include <cstring>
 #include <system_error>
 
 namespace hysteron {
@@ -13,30 +13,31 @@ namespace {
 
 /// The shortest digits d₁d₂… of a finite number and its decimal exponent: ±d₁.d₂… · 10^exponent.
 struct Decimal {
-  bool negative = false;
-  std::string digits{};
+  std::array<char, 48> text{};  ///< holds the digits
+  std::string_view digits{};
   int exponent = 0;
+  bool negative = false;
 };
 
 template <class Real>
-Decimal shortest(Real value) {
-  std::array<char, 48> buffer{};
-  const auto written =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific);
-  std::string_view text(buffer.data(), static_cast<std::size_t>(written.ptr - buffer.data()));
-  Decimal result;
-  if (text.front() == '-') {
+void shortest(Real value, Decimal& result) {
+  char* begin = result.text.data();
+  const char* const end = std::to_chars(begin, begin + result.text.size(), value, std::chars_format::scientific).ptr;
+  if (*begin == '-') {
     result.negative = true;
-    text.remove_prefix(1);
+    ++begin;
   }
-  const auto mark = text.find('e');
-  for (const char c : text.substr(0, mark)) {
-    if (c != '.') {
-      result.digits += c;
-    }
+  // d.ddde±xx: the first digit goes over the point
+  const char* const mark = static_cast<const char*>(std::memchr(begin, 'e', static_cast<std::size_t>(end - begin)));
+  if (begin[1] == '.') {
+    begin[1] = begin[0];
+    ++begin;
   }
-  result.exponent = std::atoi(std::string(text.substr(mark + 1)).c_str());
-  return result;
+  result.digits = {begin, static_cast<std::size_t>(mark - begin)};
+  for (const char* digit = mark + 2; digit != end; ++digit) {
+    result.exponent = 10 * result.exponent + (*digit - '0');
+  }
+  result.exponent = mark[1] == '-' ? -result.exponent : result.exponent;
 }
 
 template <class Real>
@@ -47,8 +48,9 @@ std::string to_text(Real value, bool literal) {
   if (std::isinf(value)) {
     return value < 0 ? "-inf" : "inf";
   }
-  const Decimal decimal = shortest(value);
-  const auto& digits = decimal.digits;
+  Decimal decimal;
+  shortest(value, decimal);
+  const std::string_view digits = decimal.digits;
   std::string text = decimal.negative ? "-" : "";
   if (decimal.exponent < -5 || decimal.exponent > 15) {
     text += digits.front();

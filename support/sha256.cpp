@@ -35,12 +35,13 @@ void take_block(std::array<Word, 8>& hash, const char* block) {
     w[t] = sigma1 + w[t - 7] + sigma0 + w[t - 16];
   }
   auto [a, b, c, d, e, f, g, h] = hash;
+#pragma GCC unroll 8  // after eight rounds every word is where it was: no word is moved
   for (std::size_t t = 0; t < 64; ++t) {
     const Word sum1 = std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25);
-    const Word choice = (e & f) ^ (~e & g);
+    const Word choice = g ^ (e & (f ^ g));
     const Word t1 = h + sum1 + choice + round_constants[t] + w[t];
     const Word sum0 = std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22);
-    const Word majority = (a & b) ^ (a & c) ^ (b & c);
+    const Word majority = (a & b) | (c & (a | b));
     h = g, g = f, f = e, e = d + t1, d = c, c = b, b = a, a = t1 + sum0 + majority;
   }
   const std::array<Word, 8> added{a, b, c, d, e, f, g, h};

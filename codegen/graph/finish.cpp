@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <cstdint>
 #include <iterator>
 #include <limits>
@@ -18,12 +18,23 @@
 namespace hysteron {
 namespace {
 
-/// Paths in the order of their names, a part before what is inside it, numbers at the end by their value.
+/// The places of characters in the order of paths: a part before what is inside it, without regard to case.
+constexpr std::array<std::uint16_t, 256> ranks = [] {
+  std::array<std::uint16_t, 256> table{};
+  for (unsigned c = 0; c < table.size(); ++c) {
+    table[c] = static_cast<std::uint16_t>((c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c) + 1);
+  }
+  table['.'] = 0;
+  table['#'] = 1;
+  return table;
+}();
+
+constexpr std::uint16_t rank(char letter) {
+  return ranks[static_cast<unsigned char>(letter)];
+}
+
+/// Paths in the order of their names, numbers at the end by their value.
 bool path_before(const std::string& a, const std::string& b) {
-  const auto rank = [](char letter) {
-    const auto upper = std::toupper(static_cast<unsigned char>(letter));
-    return letter == '.' ? 0 : letter == '#' ? 1 : upper + 1;
-  };
   for (std::size_t i = 0; i < a.size() && i < b.size(); ++i) {
     const int left = rank(a[i]);
     const int right = rank(b[i]);
@@ -37,12 +48,40 @@ bool path_before(const std::string& a, const std::string& b) {
   return a.size() < b.size();
 }
 
+/// The first eight ranks of a path as one number: where two differ, they are in the order of the paths. Behind a number
+/// sign nothing is told.
+std::uint64_t beginning(const std::string& path) {
+  constexpr std::size_t places = 8;
+  std::uint64_t key = 0;
+  std::size_t i = 0;
+  for (; i < places && i < path.size(); ++i) {
+    const std::uint64_t here = std::min<std::uint64_t>(rank(path[i]), 0xFF);
+    key = key << 8U | here;
+    if (path[i] == '#' || here == 0xFF) {
+      ++i;
+      break;
+    }
+  }
+  return i == 0 ? 0 : key << 8U * (places - i);
+}
+
 template <class Range, class Path>
 std::vector<std::uint32_t> order_by_path(const Range& range, Path path) {
-  std::vector<std::uint32_t> order(range.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return path_before(path(range[a]), path(range[b])); });
+  struct Key {
+    std::uint64_t beginning = 0;
+    std::uint32_t index = 0;
+  };
+  std::vector<Key> keys;
+  keys.reserve(range.size());
+  for (const auto& one : range) {
+    keys.push_back({beginning(path(one)), static_cast<std::uint32_t>(keys.size())});
+  }
+  std::stable_sort(keys.begin(), keys.end(), [&](const Key& a, const Key& b) {
+    return a.beginning != b.beginning ? a.beginning < b.beginning
+                                      : path_before(path(range[a.index]), path(range[b.index]));
+  });
+  std::vector<std::uint32_t> order(keys.size());
+  std::ranges::transform(keys, order.begin(), &Key::index);
   return order;
 }
 

@@ -140,6 +140,7 @@ class Checker {
       return;
     }
     std::vector<MaybeUnit>& units = outputs_[index];
+    units.reserve(node.block->outputs.size());
     for (const Field& field : node.block->outputs) {
       units.push_back(of_field(index, field));
     }
@@ -163,12 +164,17 @@ class Checker {
         continue;
       }
       const MaybeUnit expected = of_field(index, field);
-      const MaybeUnit given = of_wire(wire);
-      if (quietly && given && expected && !can_agree(*given, *expected)) {
+      MaybeUnit stated;
+      const MaybeUnit& given = of_wire(wire, stated);
+      if (!given || !expected) {
+        continue;
+      }
+      const Unit quotient = solver_.ratio(*given, *expected);
+      if (quietly && quotient.variables.empty() && !is_one(quotient)) {
         continue;  // reported in the second pass
       }
-      agree(given, expected, graph_.wire_spans[node.first_wire + pin], {wire},
-            [&] { return fmt::format("{}.{}", node.path, field.name); });
+      settle(quotient, *given, *expected, graph_.wire_spans[node.first_wire + pin], {wire},
+             [&] { return fmt::format("{}.{}", node.path, field.name); });
     }
   }
 
@@ -268,19 +274,29 @@ class Checker {
     return first_variable(index) + static_cast<std::uint32_t>(std::ranges::find(names, name) - names.begin());
   }
 
-  MaybeUnit of_wire(const Wire& wire) {
+  /// The unit of a wire, where it is kept; that of a literal is put into `stated`.
+  const MaybeUnit& of_wire(const Wire& wire, MaybeUnit& stated) {
     switch (wire.from) {
       case Wire::From::Input:
         return inputs_[wire.index];
       case Wire::From::Parameter:
         return parameters_[wire.index];
       case Wire::From::Node:
-        return wire.port < outputs_[wire.index].size() ? outputs_[wire.index][wire.port] : std::nullopt;
+        if (wire.port < outputs_[wire.index].size()) {
+          return outputs_[wire.index][wire.port];
+        }
+        break;
       case Wire::From::Literal:
-        return declared(literal_unit(wire));
+        stated = declared(literal_unit(wire));
+        break;
       default:
-        return std::nullopt;
+        break;
     }
+    return stated;
+  }
+  MaybeUnit of_wire(const Wire& wire) {
+    MaybeUnit stated;
+    return of_wire(wire, stated);
   }
 
   /// The unit of an expression. A literal takes the unit of what it is added to, and counts as a number in products.
@@ -322,11 +338,6 @@ class Checker {
 
   static bool is_one(const Unit& unit) { return same_size(units::conversion(unit, Unit{}).value_or(0.0), 1.0); }
 
-  bool can_agree(const Unit& given, const Unit& expected) {
-    const Unit quotient = solver_.ratio(given, expected);
-    return !quotient.variables.empty() || is_one(quotient);
-  }
-
   /// The wires of two units: that of the given one, and that of the expected one, where there is one.
   struct Sides {
     Wire given{};
@@ -348,10 +359,16 @@ class Checker {
     if (!given || !expected) {
       return;
     }
-    const Unit quotient = solver_.ratio(*given, *expected);
+    settle(solver_.ratio(*given, *expected), *given, *expected, span, sides, where);
+  }
+
+  /// The same of their ratio.
+  template <class Where>
+  void settle(const Unit& quotient, const Unit& given, const Unit& expected, language::Span span, Sides sides,
+              Where where) {
     if (quotient.variables.empty()) {
       if (!is_one(quotient)) {
-        mismatches_.push_back({*given, *expected, span, sides, where()});
+        mismatches_.push_back({given, expected, span, sides, where()});
       }
     } else if (quotient.variables.size() <= most_unknowns) {
       solver_.solve(quotient);

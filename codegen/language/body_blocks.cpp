@@ -44,8 +44,26 @@ class Scan {
     token_ = lexer_.next();
   }
 
+  /// Whether the word FUNCTION may stand somewhere: most texts have none, and need not be read for their names.
+  [[nodiscard]] bool may_have_functions() const {
+    constexpr std::string_view word = "FUNCTION";
+    for (std::size_t at = 0; at + word.size() <= text_.size(); ++at) {
+      if ((text_[at] | 0x20) != 'f' || !same_name(text_.substr(at, word.size()), word)) {
+        continue;
+      }
+      const bool part_of_another = (at > 0 && text_[at - 1] == '_') || text_.substr(at + word.size(), 1) == "_";
+      if (!part_of_another) {  // FUNCTION_BLOCK, END_FUNCTION
+        return true;
+      }
+    }
+    return false;
+  }
+
   /// The names of the FUNCTIONs of the text: to call one is to be sequential.
   void collect_functions() {
+    if (!may_have_functions()) {
+      return;
+    }
     Lexer lexer(text_, Comments::Annotated, nullptr);
     bool function = false;
     for (Token one = lexer.next(); one.symbol != Symbol::End; one = lexer.next()) {
@@ -120,8 +138,11 @@ class Scan {
            is_elementary_type(text(lexer.next()));
   }
   [[nodiscard]] bool is_time() const {
+    if (token_.symbol != Symbol::Typed) {
+      return false;
+    }
     const auto type = word().substr(0, word().find('#'));
-    return token_.symbol == Symbol::Typed && (same_name(type, "T") || same_name(type, "TIME"));
+    return same_name(type, "T") || same_name(type, "TIME");
   }
   static bool marked(std::string_view comments) {
     for (auto at = comments.find('@'); at != std::string_view::npos; at = comments.find('@', at + 1)) {

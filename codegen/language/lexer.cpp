@@ -41,7 +41,8 @@ bool is_digit(char c) {
   return class_of(c) == Digit;
 }
 bool is_word(char c) {
-  return class_of(c) == Letter || class_of(c) == Digit;
+  static_assert(Letter + 1 == Digit);
+  return static_cast<unsigned>(class_of(c)) - Letter <= 1U;
 }
 bool is_exponent_mark(char c) {
   return c == 'e' || c == 'E';
@@ -125,6 +126,12 @@ Token Lexer::next() {
 /// Passes over everything that is no token: blanks, comments, and what is refused wherever it stands.
 void Lexer::skip_blank() {
   while (at_ < size_) {
+    while (at_ < size_ && text_[at_] == ' ') {
+      ++at_;
+    }
+    if (at_ == size_) {
+      return;
+    }
     const char c = text_[at_];
     if (class_of(c) == Blank) {
       line_ended_ = line_ended_ || c == '\n';
@@ -222,24 +229,28 @@ void Lexer::skip_illegal() {
 
 Token Lexer::identifier() {
   const auto start = at_;
-  bool doubled = false;
-  char last = '\0';
-  while (at_ < size_ && is_word(text_[at_])) {
-    doubled = doubled || (last == '_' && text_[at_] == '_');
-    last = text_[at_++];
+  const char* const begin = text_.data() + start;
+  const char* const end_of_text = text_.data() + size_;
+  const char* end = begin;
+  bool underscores = false;
+  for (; end != end_of_text && is_word(*end); ++end) {
+    underscores |= *end == '_';
   }
+  at_ += static_cast<std::uint32_t>(end - begin);
   if (peek() == '#') {
     return typed(start);
   }
   Token word = token(Symbol::Identifier, start);
-  if ((last == '_' || doubled) && !foreign_) {
+  const std::string_view name = text_.substr(start, word.length);
+  const bool doubled = underscores && name.find("__") != std::string_view::npos;
+  if (underscores && (name.back() == '_' || doubled) && !foreign_) {
     error(error::name_not_portable, start, word.length,
-          fmt::format("The name {} {}, which IEC 61131-3 does not allow.", text_.substr(start, word.length),
+          fmt::format("The name {} {}, which IEC 61131-3 does not allow.", name,
                       doubled ? "has two underscores in a row" : "ends in an underscore"),
           "Rename it, with single underscores between letters or digits.");
     return word;
   }
-  word.keyword = keyword_of(text_.substr(start, word.length));
+  word.keyword = keyword_of(name);
   if (word.keyword != Keyword::None) {
     word.symbol = Symbol::Keyword;
   }

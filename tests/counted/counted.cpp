@@ -4,16 +4,20 @@
 #include <cstdio>
 #include <functional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "bench/machine_record.hpp"
 #include "bench/many_instances.hpp"
 #include "bench/reference_signal.hpp"
 #include "bench/static_map_data.hpp"
 #include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "codegen/parameters/parameter_file.hpp"
+#include "diagnosis/diagnose.hpp"
 #include "feedforward.hpp"
 #include "records/record.hpp"
+#include "support/text_file.hpp"
 #include "tuning/output_error.hpp"
 #include "tuning/rollout.hpp"
 
@@ -23,6 +27,9 @@ constexpr std::size_t steps = 10'000;
 constexpr int instances = 10'000;
 constexpr int fewer_instances = 1'000;
 constexpr std::size_t points = 200;
+constexpr std::size_t short_record = 1'000;
+constexpr std::size_t diagnosed = 500;
+constexpr int iterations = 4;
 
 }  // namespace
 
@@ -99,6 +106,38 @@ double rollout(bool derivatives) {
   });
 }
 
+/// The first iterations of the fit of six parameters to a record of the same machine.
+double output_error() {
+  auto numbers = hysteron::bench::machine_record(short_record);
+  auto record = hysteron::records::Record::even(0.0, hysteron::bench::machine_period, short_record);
+  record.add({.name = "U", .values = std::move(numbers.u)});
+  record.add({.name = "Y", .values = std::move(numbers.y)});
+  const auto problem = hysteron::output_error_problem(
+      hysteron::bench::machine_program(),
+      hysteron::parameters::parse_parameter_file("counted.toml", hysteron::bench::machine_parameters),
+      std::vector{record});
+  return counted_region(
+      [&] { return hysteron::fit_output_error(problem, {.max_iterations = iterations}).solution.iterations; });
+}
+
+/// The diagnosis of a record of that machine by the model of bench/diagnosis, which lacks its play and its creep:
+/// two effects at each edge, one at a time.
+double diagnosis() {
+  auto numbers = hysteron::bench::machine_record(diagnosed);
+  hysteron::diagnosis::DiagnosisInput input;
+  input.text = hysteron::read_text_file(HYSTERON_SOURCE_DIR "/bench/diagnosis/axis.st");
+  input.program = hysteron::compile_text(input.text);
+  input.file = hysteron::parameters::read_parameter_file(HYSTERON_SOURCE_DIR "/bench/diagnosis/params.toml");
+  input.records.push_back(hysteron::records::Record::even(0.0, hysteron::bench::machine_period, diagnosed));
+  input.records.front().add({.name = "U", .values = std::move(numbers.u)});
+  input.records.front().add({.name = "Y", .values = std::move(numbers.y)});
+  return counted_region([&] {
+    const auto found = hysteron::diagnosis::diagnose(
+        input, {.effects = {"backlash", "creep"}, .most_effects = 1, .effort = 0.02, .threads = 1});
+    return static_cast<double>(found.work);
+  });
+}
+
 double static_fit() {
   const auto data = hysteron::bench::static_map_data(points);
   return counted_region([&] { return hysteron::fit_static_map({.p = data.p, .M = data.M}).map.C3; });
@@ -125,12 +164,16 @@ int main(int count, char** arguments) {
     result = rollout(false);
   } else if (work == "derivatives") {
     result = rollout(true);
+  } else if (work == "output_error") {
+    result = output_error();
+  } else if (work == "diagnosis") {
+    result = diagnosis();
   } else if (work == "static_fit") {
     result = static_fit();
   } else {
     std::fputs(
         "usage: counted generated_step | interpreted_step | check | check_fewer | generate | generate_fewer | "
-        "rollout | derivatives | static_fit\n",
+        "rollout | derivatives | output_error | diagnosis | static_fit\n",
         stderr);
     return 2;
   }

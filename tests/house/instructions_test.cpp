@@ -1,12 +1,13 @@
 // Speed, held in continuous integration by counting instructions: a time would not repeat, a count does.
 //
-// Each piece of work of tests/counted runs once under callgrind. Its count per unit may exceed the budget by a margin;
-// far below the budget fails too, so that the table stays true. After a change that makes something faster or, for a
-// good reason, slower, write the printed count into the table.
+// Each piece of work of tests/counted runs once under callgrind. Its count per unit may exceed the budget by 3 %; far
+// below the budget fails too, so that the table stays true. After a change that makes something faster or, for a good
+// reason, slower, write the printed count into the table. What runs lanes is counted on a processor with AVX2.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <fstream>
+#include <iostream>
 #include <string>
 
 #include "tests/support/scratch_folder.hpp"
@@ -16,20 +17,22 @@ namespace {
 
 struct Budget {
   const char* work;
-  double units;    ///< steps, instances or fits in the work
+  double units;    ///< steps, instances, iterations or fits in the work
   double counted;  ///< instructions a unit
 };
 
-constexpr double margin = 0.15;
-constexpr double stale = 0.40;
+constexpr double margin = 0.03;
+constexpr double stale = 0.20;
 
 constexpr Budget budgets[] = {
     {"generated_step", 1e4, 302},    // a step of bench/feedforward.st, most of it pow
-    {"interpreted_step", 1e4, 518},  // the same
-    {"check", 1e4, 60'300},          // an instance: read twice (once for sequential bodies), checked and scheduled
-    {"generate", 1e4, 106'000},      // an instance: write its C++, by code that is compiled with -O2
-    {"rollout", 1e4, 748},           // a sample of a lag, a play, a resonance and a creep
-    {"derivatives", 1e4, 5'710},     // the same, with the derivatives by six parameters
+    {"interpreted_step", 1e4, 582},  // the same
+    {"check", 1e4, 52'000},          // an instance: read twice (once for sequential bodies), checked and scheduled
+    {"generate", 1e4, 97'200},       // an instance: write its C++, by code that is compiled with -O2
+    {"rollout", 1e4, 794},           // a sample of a lag, a play, a resonance and a creep
+    {"derivatives", 1e4, 5'670},     // the same, with the derivatives by six parameters
+    {"output_error", 4, 14.45e6},    // an iteration of a fit of six parameters to 1000 samples, start and end included
+    {"diagnosis", 1, 4.704e9},       // 500 samples, two effects at each edge
     {"static_fit", 1, 547'000},      // a fit of 200 points
 };
 
@@ -78,6 +81,7 @@ TEST_P(Instructions, StayWithinTheBudget) {
   const Budget& budget = GetParam();
   const double counted = count_instructions(budget.work) / budget.units;
   RecordProperty("instructions", std::to_string(counted));
+  std::cout << budget.work << ": " << counted << " instructions a unit, budget " << budget.counted << "\n";
   EXPECT_LE(counted, budget.counted * (1.0 + margin)) << budget.work << " costs more than its budget";
   EXPECT_GE(counted, budget.counted * (1.0 - stale)) << budget.work << " costs much less: lower its budget";
 }

@@ -47,7 +47,16 @@ StructLayout::StructLayout(const Graph& graph, const Routine& routine, std::span
     }
     return groups[number];
   };
-  const auto field_name = [&](std::string_view name) { return fields_[fields_.add(field_identifier(name)).number]; };
+  // Thousands of instances have the same few fields: each is spelled once.
+  NameTable written;
+  std::vector<std::string_view> spelled;
+  const auto field_name = [&](std::string_view name) {
+    const NameTable::Entry entry = written.add(name);
+    if (entry.is_new) {
+      spelled.push_back(fields_[fields_.add(field_identifier(name)).number]);
+    }
+    return spelled[entry.number];
+  };
   for (const Parameter& parameter : graph.parameters) {
     const auto dot = parameter.path.rfind('.');
     if (dot == std::string::npos) {

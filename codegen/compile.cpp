@@ -9,6 +9,7 @@
 #include "codegen/graph/definition.hpp"
 #include "codegen/graph/elaborate.hpp"
 #include "codegen/graph/portability.hpp"
+#include "codegen/graph/remaining_loops.hpp"
 #include "codegen/graph/text_order.hpp"
 #include "codegen/graph/units.hpp"
 #include "codegen/trace/sized_block.hpp"
@@ -97,16 +98,20 @@ struct Checked {
   std::vector<Program> programs;  ///< beside definitions.list
 };
 
-/// Reports reads on the wrong side of a call. Says whether the loops of a block have been told as memory: HY402 in
-/// place of HY401. Where the order of the text means nothing they are loops.
+/// Reports reads on the wrong side of a call or an assignment. A loop through a variable that is read before its
+/// assignment is memory: HY402 in place of HY401. Where the order of the text means nothing it is a loop. Says whether
+/// there were loops.
 bool check_order(const Definitions& definitions, std::uint32_t index, const Graph& graph, bool any_order,
                  Diagnostics& own) {
   const bool has_loops = own.has_errors();
-  Diagnostics found;
-  const bool memory = check_text_order(definitions, index, graph, found) && !any_order;
-  if (has_loops && !memory) {
-    return false;  // with the loop cut, the order can be told
+  if (has_loops && any_order) {
+    return true;
   }
+  Diagnostics found;
+  if (has_loops) {
+    found = remaining_loops(definitions, index, remembered_reads(definitions, index, graph));
+  }
+  check_text_order(definitions, index, graph, found.has_errors(), found);
   for (const Diagnostic& one : own.all()) {
     if (one.number != error::algebraic_loop) {
       found.add(one);

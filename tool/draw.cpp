@@ -25,8 +25,9 @@ constexpr std::string_view draw_examples = R"(Examples:
   hysteron draw axis.st --out axis.dot      the text that Graphviz draws from
 
 Boxes are what the text declares, with their pins and units; a FUNCTION_BLOCK of the text is a frame round what is
-inside. Wires of LREAL are black, of DINT and WORD blue, of BOOL dashed. A picture is drawn by the program dot of
-Graphviz, from the path or as the environment variable GRAPHVIZ_DOT names it.
+inside, and one with a sequential body a box with its pins and statements. Wires of LREAL are black, of DINT and WORD
+blue, of BOOL dashed. A picture is drawn by the program dot of Graphviz, from the path or as the environment variable
+GRAPHVIZ_DOT names it.
 Exit codes: 0 done; 2 an error in the diagram, no Graphviz, or the file cannot be written.
 )";
 

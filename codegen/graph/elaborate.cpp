@@ -353,6 +353,9 @@ Wire Elaborator::resolve(const Instance& instance, const std::vector<Part>& part
             fmt::format("Name one of its outputs: {}.", fmt::join(pin_names(declared, false), ", ")));
       return {};
     }
+    if (remembered_ != nullptr && remembered_->contains(&reference)) {
+      return builder_.literal(declared.field.type, 0.0);
+    }
     const auto noisy = noisy_.find(instance.first_slot + found->second);
     return noisy != noisy_.end() ? noisy->second : alias(instance.first_slot + found->second, declared.field.type);
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -58,6 +59,8 @@ class Elaborator {
         builder_(graph_) {
     graph_.source = definitions.source;
   }
+  /// Reads of variables that are a constant instead: what remains of loops where these are memory.
+  void remember(const std::unordered_set<const language::Reference*>& reads) { remembered_ = &reads; }
   Graph run(std::uint32_t top, OuterPlaces& places);
 
  private:
@@ -117,6 +120,7 @@ class Elaborator {
   const Definitions& definitions_;
   const language::SourceFile& source_;
   const ElaborateOptions& options_;
+  const std::unordered_set<const language::Reference*>* remembered_ = nullptr;
   Diagnostics& diagnostics_;
   Graph graph_;
   GraphBuilder builder_;

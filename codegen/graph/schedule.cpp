@@ -259,10 +259,11 @@ class Scheduler {
 
   void report(const std::vector<std::uint32_t>& loop) {
     const auto circle = shortest_circle(loop);
-    std::string path;
+    std::vector<std::string_view> owners;  // each once, where several operations of an expression follow each other
     struct Cut {
       OuterPlace place;
       std::string wire;
+      bool inside = false;  ///< of one expression, where no delay can stand
     };
     std::vector<Cut> cuts;
     // Against the order of dependence, the way the signal flows.
@@ -277,15 +278,21 @@ class Scheduler {
         const Wire& wire = graph_.wire(node, pin);
         const Node& from = graph_.nodes[wire.index];
         const std::uint32_t place = node.first_wire + pin;
-        path += path.empty() ? "" : " → ";
-        path += from.owner();
+        if (owners.empty() || owners.back() != from.owner()) {
+          owners.push_back(from.owner());
+        }
         cuts.push_back({places_.empty() ? OuterPlace{0, graph_.wire_spans[place]} : places_[place],
                         fmt::format("wire {} → {}: a {} here would cut the loop", output_name(from, wire.port),
-                                    input_name(node, pin), loop_cutter)});
+                                    input_name(node, pin), loop_cutter),
+                        node.block == nullptr && from.block == nullptr && node.owner() == from.owner()});
       });
     }
-    if (!cuts.empty()) {
-      path += " → " + path.substr(0, path.find(" → "));
+    if (owners.size() > 1 && owners.back() == owners.front()) {
+      owners.pop_back();
+    }
+    owners.push_back(owners.empty() ? std::string_view() : owners.front());
+    if (!std::ranges::all_of(cuts, &Cut::inside)) {
+      std::erase_if(cuts, [](const Cut& cut) { return cut.inside; });
     }
     // A delay inside a block that is used twice would stand in both: only the outermost wires are shown.
     std::uint32_t outermost = none;
@@ -300,7 +307,7 @@ class Scheduler {
     }
     diagnostics_.error(
         error::algebraic_loop, graph_.place(cuts.empty() ? language::Span{} : cuts.front().place.span),
-        fmt::format("algebraic loop: {}", path),
+        fmt::format("algebraic loop: {}", fmt::join(owners, " → ")),
         fmt::format("Every value in this circle needs the others in the same step. Put a {} into one of its wires.",
                     loop_cutter),
         std::move(notes));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <queue>
 #include <set>
@@ -34,6 +35,7 @@ enum class Side : std::uint8_t {
 struct Read {
   std::uint32_t statement = 0;
   std::uint32_t variable = 0;
+  const language::Reference* reference = nullptr;
   Side side = Side::Behind;
   language::Span span{};
   std::string text{};
@@ -68,14 +70,21 @@ class Order {
     }
   }
 
-  void check(Diagnostics& diagnostics) const {
+  void check(bool has_loops, Diagnostics& diagnostics) const {
+    const std::vector<std::uint32_t> loop = circles(false);
+    const std::vector<std::uint32_t> circle = circles(true);
     std::set<std::pair<std::uint32_t, std::string>> told;  // X := X + (U - X) reads X twice, and is told once
     for (const Read& read : reads_) {
       const std::uint32_t writer = *writer_[read.variable];
       const bool before = read.statement <= writer;
-      if (before != (read.side == Side::RatherBefore) && told.emplace(read.statement, upper(read.text)).second) {
+      if (before == (read.side == Side::RatherBefore) ||
+          (has_loops && !is_remembered(read) && loop[read.statement] == loop[writer])) {
+        continue;
+      }
+      if (told.emplace(read.statement, upper(read.text)).second) {
         if (read.side == Side::Behind) {
-          report_hidden_delay(read, writer, diagnostics);
+          report_hidden_delay(read, writer, is_remembered(read) && circle[read.statement] == circle[writer],
+                              diagnostics);
         } else {
           report_other_meaning(read, writer, diagnostics);
         }
@@ -83,38 +92,14 @@ class Order {
     }
   }
 
-  /// Whether every circle among the statements goes through a variable that is read before it is assigned: memory, as
-  /// an IEC compiler has it, and no algebraic loop.
-  [[nodiscard]] bool loops_are_memory() const {
-    const std::size_t count = definition_.block->statements.size();
-    std::vector<std::vector<std::uint32_t>> readers(count);
-    std::vector<std::uint32_t> waits_for(count, 0);
+  [[nodiscard]] std::unordered_set<const language::Reference*> remembered() const {
+    std::unordered_set<const language::Reference*> list;
     for (const Read& read : reads_) {
-      const std::uint32_t writer = *writer_[read.variable];
-      const bool remembered = read.statement <= writer && !is_call(writer);
-      if (read.side == Side::Behind && !remembered) {
-        readers[writer].push_back(read.statement);
-        ++waits_for[read.statement];
+      if (is_remembered(read)) {
+        list.insert(read.reference);
       }
     }
-    std::vector<std::uint32_t> free;
-    for (std::uint32_t s = 0; s < count; ++s) {
-      if (waits_for[s] == 0) {
-        free.push_back(s);
-      }
-    }
-    std::size_t placed = 0;
-    while (!free.empty()) {
-      const std::uint32_t statement = free.back();
-      free.pop_back();
-      ++placed;
-      for (const std::uint32_t reader : readers[statement]) {
-        if (--waits_for[reader] == 0) {
-          free.push_back(reader);
-        }
-      }
-    }
-    return placed == count;
+    return list;
   }
 
   [[nodiscard]] std::vector<std::uint32_t> sorted() const {
@@ -186,6 +171,67 @@ class Order {
     return std::holds_alternative<language::Call>(definition_.block->statements[statement]);
   }
 
+  /// Whether an IEC compiler has last cycle's value of a variable there.
+  [[nodiscard]] bool is_remembered(const Read& read) const {
+    const std::uint32_t writer = *writer_[read.variable];
+    return read.side == Side::Behind && read.statement <= writer && !is_call(writer);
+  }
+
+  /// By statement, a number that those have in common which need each other within a step, or, `with_memory`, from one
+  /// step to the next by a variable. Tarjan's strongly connected components, without recursion.
+  [[nodiscard]] std::vector<std::uint32_t> circles(bool with_memory) const {
+    const auto count = static_cast<std::uint32_t>(definition_.block->statements.size());
+    std::vector<std::vector<std::uint32_t>> needs(count);
+    for (const Read& read : reads_) {
+      if (read.side == Side::Behind && (with_memory || !is_remembered(read))) {
+        needs[read.statement].push_back(*writer_[read.variable]);
+      }
+    }
+    struct Visit {
+      std::uint32_t statement;
+      std::size_t next;
+    };
+    constexpr auto none = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> circle(count, none);
+    std::vector<std::uint32_t> number(count, none);
+    std::vector<std::uint32_t> lowest(count, 0);
+    std::vector<std::uint32_t> component;
+    std::uint32_t counter = 0;
+    for (std::uint32_t root = 0; root < count; ++root) {
+      std::vector<Visit> stack;
+      const auto enter = [&](std::uint32_t statement) {
+        number[statement] = lowest[statement] = counter++;
+        component.push_back(statement);
+        stack.push_back({statement, 0});
+      };
+      if (number[root] == none) {
+        enter(root);
+      }
+      while (!stack.empty()) {
+        const std::uint32_t statement = stack.back().statement;
+        if (stack.back().next < needs[statement].size()) {
+          const std::uint32_t other = needs[statement][stack.back().next++];
+          if (number[other] == none) {
+            enter(other);
+          } else if (circle[other] == none) {
+            lowest[statement] = std::min(lowest[statement], number[other]);
+          }
+          continue;
+        }
+        stack.pop_back();
+        if (!stack.empty()) {
+          std::uint32_t& outer = lowest[stack.back().statement];
+          outer = std::min(outer, lowest[statement]);
+        }
+        while (lowest[statement] == number[statement] && circle[statement] == none) {
+          circle[component.back()] = statement;
+          component.pop_back();
+        }
+      }
+    }
+    return circle;
+  }
+
   /// A name for a delay that the block does not declare yet: LAST_BEFORE.
   [[nodiscard]] std::string delay_name(std::string_view variable) const {
     std::string name = fmt::format("{}_BEFORE", variable);
@@ -195,7 +241,7 @@ class Order {
     return name;
   }
 
-  void report_hidden_delay(const Read& read, std::uint32_t writer, Diagnostics& diagnostics) const {
+  void report_hidden_delay(const Read& read, std::uint32_t writer, bool in_circle, Diagnostics& diagnostics) const {
     const Declared& declared = definition_.variables[read.variable];
     const std::string name = delay_name(declared.field.name);
     const Type type = type_of(read);
@@ -207,10 +253,9 @@ class Order {
         fmt::format("An IEC compiler has last cycle's value here: memory. If that is meant, declare {0} : {1}{2}; call "
                     "{0}(XIN := {3}); and read {0}.XOUT here. {4}",
                     name, delay_of(type), start, read.text,
-                    read.statement == writer
-                        ? "Within one step a value cannot depend on itself."
-                        : "If this step's value is meant, move this statement behind that one, as `hysteron fmt "
-                          "--any-order` does."),
+                    in_circle ? "Within one step a value cannot depend on itself."
+                              : "If this step's value is meant, move this statement behind that one, as `hysteron fmt "
+                                "--any-order` does."),
         {{source_.place(statement_span(writer)), is_call(writer) ? "called here" : "assigned here"}});
   }
 
@@ -281,8 +326,11 @@ class Order {
       return;
     }
     const Declared& declared = definition_.variables[found->second];
-    Read read{
-        .statement = statement, .variable = found->second, .span = span, .text = std::string(source_.text_of(span))};
+    Read read{.statement = statement,
+              .variable = found->second,
+              .reference = &reference,
+              .span = span,
+              .text = std::string(source_.text_of(span))};
     if (declared.kind == Declared::Kind::LibraryBlock) {
       const auto node = nodes_.find(upper(declared.field.name));
       if (node == nodes_.end()) {
@@ -352,11 +400,14 @@ std::string_view delay_of(Type type) {
   }
 }
 
-bool check_text_order(const Definitions& definitions, std::uint32_t definition, const Graph& graph,
+std::unordered_set<const language::Reference*> remembered_reads(const Definitions& definitions,
+                                                                std::uint32_t definition, const Graph& graph) {
+  return Order(definitions, definition, graph).remembered();
+}
+
+void check_text_order(const Definitions& definitions, std::uint32_t definition, const Graph& graph, bool has_loops,
                       Diagnostics& diagnostics) {
-  const Order order(definitions, definition, graph);
-  order.check(diagnostics);
-  return order.loops_are_memory();
+  Order(definitions, definition, graph).check(has_loops, diagnostics);
 }
 
 std::vector<std::uint32_t> statement_order(const Definitions& definitions, std::uint32_t definition,

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "codegen/graph/definition.hpp"
@@ -16,10 +17,15 @@
 
 namespace hysteron {
 
-/// Reports reads that stand on the wrong side of a call. `graph` is the definition elaborated by itself. Says whether
-/// every circle in it goes through a variable that is read before its assignment: a loop there would be memory in an
-/// IEC compiler, and HY402 has told it.
-bool check_text_order(const Definitions& definitions, std::uint32_t definition, const Graph& graph,
+/// Reads of a variable before its assignment: memory, as an IEC compiler has it. A circle of statements through one of
+/// them is no algebraic loop.
+std::unordered_set<const language::Reference*> remembered_reads(const Definitions& definitions,
+                                                                std::uint32_t definition, const Graph& graph);
+
+/// Reports reads that stand on the wrong side of a call or an assignment. `graph` is the definition elaborated by
+/// itself. With `has_loops` the outputs that are read within a circle of statements are left out: with that loop cut,
+/// their order can be told.
+void check_text_order(const Definitions& definitions, std::uint32_t definition, const Graph& graph, bool has_loops,
                       Diagnostics& diagnostics);
 
 /// Whether an output of a block is worked out from what the block remembers.

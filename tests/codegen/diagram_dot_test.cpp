@@ -82,9 +82,62 @@ TEST(DiagramDot, TheSameTextGivesTheSameBytes) {
   EXPECT_EQ(drawn(nested).text, drawn(nested).text);
 }
 
+const std::string with_bodies =
+    "FUNCTION_BLOCK VALVE (* @body *)\n  VAR_INPUT\n    LEVEL : LREAL;  (* @unit mm *)\n    HAND : BOOL;\n    K : "
+    "LREAL := 1.0;  (* "
+    "@param *)\n  END_VAR\n  VAR_OUTPUT\n    OPEN, SEEN : BOOL;\n  END_VAR\n\n"
+    "  IF LEVEL < K * 200.0 THEN\n    OPEN := TRUE; (* low & dry *)\n  ELSIF LEVEL > 800.0 THEN\n\tOPEN := FALSE;\n"
+    "  END_IF;\n  SEEN := HAND;\nEND_FUNCTION_BLOCK\n"
+    "FUNCTION_BLOCK TANK (* @ts 100ms *)\n  VAR_INPUT\n    RAW : LREAL;  (* @unit mm *)\n    AUTO : BOOL;\n  END_VAR\n"
+    "  VAR_OUTPUT\n    A, B : BOOL;\n  END_VAR\n  VAR\n    V : VALVE;\n    W : VALVE := (K := 0.5);\n  END_VAR\n\n"
+    "  V(LEVEL := RAW, HAND := AUTO);\n  W(LEVEL := RAW * 2.0);\n  A := V.OPEN;\n  B := V.OPEN AND W.OPEN;\n"
+    "END_FUNCTION_BLOCK\n";
+
+/// A block with a sequential body has pins like one of the library, and its statements stand within it.
+TEST(DiagramDot, ShowsASequentialBodyWithItsPinsAndItsStatements) {
+  const DiagramDot dot = drawn(with_bodies, "TANK");
+  EXPECT_THAT(dot.text, AllOf(HasSubstr("<B>V</B>"), HasSubstr("PORT=\"in LEVEL\""), HasSubstr("PORT=\"in HAND\""),
+                              HasSubstr("PORT=\"out OPEN\""), Not(HasSubstr("PORT=\"out SEEN\""))));
+  EXPECT_THAT(dot.text,
+              HasSubstr(">IF LEVEL &lt; K * 200.0 THEN<BR ALIGN=\"LEFT\"/>&#160;&#160;OPEN := TRUE; (* low &amp; "
+                        "dry *)<BR ALIGN=\"LEFT\"/>ELSIF LEVEL &gt; 800.0 THEN<BR ALIGN=\"LEFT\"/>&#160;&#160;OPEN"));
+  EXPECT_THAT(dot.text, HasSubstr("END_IF;<BR ALIGN=\"LEFT\"/>SEEN := HAND;<BR ALIGN=\"LEFT\"/></FONT>"));
+  EXPECT_EQ(dot.text.find("SEEN := HAND"), dot.text.rfind("SEEN := HAND"))
+      << "the second instance does not repeat them";
+  EXPECT_THAT(dot.text, HasSubstr("\"RAW (port)\" -> \"V\":\"in LEVEL\":w;"));
+  EXPECT_THAT(dot.text, HasSubstr("\"W.LEVEL (expression)\" -> \"W\":\"in LEVEL\":w;"));
+  EXPECT_THAT(dot.text, HasSubstr("\"V\":\"out OPEN\":e -> \"A (port)\" [style=dashed];"));
+  EXPECT_THAT(dot.text, AllOf(HasSubstr("K = 0.5"), Not(HasSubstr("cluster_V"))));
+  EXPECT_EQ(dot.boxes, 8U) << "RAW, AUTO; V, W, the argument of W; B; A and B";
+}
+
+TEST(DiagramDot, DrawsABodyByItselfBetweenItsPorts) {
+  const DiagramDot dot = drawn(with_bodies + "\n", "VALVE");
+  EXPECT_THAT(dot.text, HasSubstr("\"LEVEL (port)\" -> \"(body)\":\"in LEVEL\":w;"));
+  EXPECT_THAT(dot.text, HasSubstr("\"(body)\":\"out SEEN\":e -> \"SEEN (port)\" [style=dashed];"));
+  EXPECT_THAT(dot.text, HasSubstr("IF LEVEL &lt; K * 200.0 THEN"));
+}
+
+TEST(DiagramDot, OfALongBodyTheFirstLinesAreShown) {
+  std::string body;
+  for (int i = 0; i < 60; ++i) {
+    body +=
+        "  Y := Y + X * " + std::to_string(i) + ".0;" + (i == 0 ? "  (* " + std::string(80, 'x') + " *)" : "") + "\n";
+  }
+  const std::string dot =
+      drawn(
+          "FUNCTION_BLOCK LONG_ONE (* @ts 1ms @body *)\n  VAR_INPUT\n    X : LREAL;\n  END_VAR\n  VAR_OUTPUT\n    "
+          "Y : LREAL;\n  END_VAR\n\n" +
+          body + "END_FUNCTION_BLOCK\n")
+          .text;
+  EXPECT_THAT(dot,
+              AllOf(HasSubstr("Y := Y + X * 22.0;"), Not(HasSubstr("X * 23.0")), HasSubstr("… and 37 more lines")));
+  EXPECT_THAT(dot, AllOf(HasSubstr("xxxx …<BR"), Not(HasSubstr(std::string(60, 'x')))));
+}
+
 /// Each name at an end of a wire is a box, so that Graphviz makes none up.
 TEST(DiagramDot, NoWireEndsAtNothing) {
-  const std::string dot = drawn(nested).text;
+  const std::string dot = drawn(nested).text + drawn(with_bodies, "TANK").text;
   std::size_t ends = 0;
   for (std::size_t at = dot.find(" -> "); at != std::string::npos; at = dot.find(" -> ", at + 1)) {
     const std::size_t line = dot.rfind('\n', at) + 1;

@@ -249,6 +249,49 @@ TEST(Formatting, VariablesInACircleAreMemoryToo) {
   EXPECT_EQ(found[0].number, error::hidden_delay);
 }
 
+/// What is told of each line: its number and cause.
+std::vector<std::string> told_by_line(const std::string& text) {
+  std::vector<std::string> list;
+  for (const Diagnostic& one : told(text)) {
+    list.push_back(fmt::format("{} HY{} {}", one.place.line, one.number, one.cause));
+  }
+  return list;
+}
+
+/// Statement by statement: one line is memory, a circle of calls elsewhere is a loop.
+TEST(Formatting, MemoryIsToldBesideALoop) {
+  const std::string loop = "S(IN1 := X, IN2 := P.XOUT);\nP(XIN := S.XOUT);\nY := P.XOUT + F;";
+  const std::string names = "F : LREAL; G : LREAL := 0.0; S : HY_SUM; P : HY_GAIN;";
+  using ::testing::ElementsAre;
+  const auto is_loop = AllOf(HasSubstr("HY401"), HasSubstr("P → S → P"));
+  EXPECT_THAT(told_by_line(with_memory(names, "F := F + (X - F) * 0.1;\n" + loop)),
+              ElementsAre(HasSubstr("5 HY402 hidden delay: F is read"), is_loop));
+  EXPECT_THAT(
+      told_by_line(with_memory(names, loop + "\nF := F + (X - F) * 0.1;")),
+      ElementsAre(is_loop, HasSubstr("7 HY402 hidden delay: F is read"), HasSubstr("8 HY402 hidden delay: F is read")));
+  EXPECT_THAT(told_by_line(with_memory(names, "F := G;\nG := F * 0.5;\n" + loop)),
+              ElementsAre(HasSubstr("5 HY402 hidden delay: G is read"), is_loop));
+  // The loop itself goes on through a filter that remembers, and through one that does not.
+  EXPECT_THAT(told_by_line(with_memory(names,
+                                       "S(IN1 := X, IN2 := F);\nP(XIN := S.XOUT);\nF := F * 0.9 + P.XOUT;\n"
+                                       "Y := F;")),
+              ElementsAre(HasSubstr("5 HY402 hidden delay: F is read"), HasSubstr("7 HY402 hidden delay: F is read")));
+  EXPECT_THAT(
+      told_by_line(with_memory(names,
+                               "G := P.XOUT;\nF := F + (G - F) * 0.1;\nS(IN1 := F, IN2 := G);\n"
+                               "P(XIN := S.XOUT);\nY := F;")),
+      ElementsAre(HasSubstr("6 HY402 hidden delay: F is read"), HasSubstr("7 HY401 algebraic loop: F → S → P → F")));
+  // An output that is read too early beside the loop is told; those in the loop are not, since the loop decides there.
+  EXPECT_THAT(told_by_line(with_memory(names + " A : HY_GAIN;", "F := A.XOUT;\nA(XIN := X);\n" + loop)),
+              ElementsAre(HasSubstr("5 HY402 hidden delay: A.XOUT is read"), is_loop));
+}
+
+TEST(Formatting, TheMendOfACircleMovesNothing) {
+  const auto found = told(with_memory("F, G : LREAL;", "F := G;\nG := F + X;\nY := G;"));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_THAT(found[0].mend, AllOf(HasSubstr("cannot depend on itself"), Not(HasSubstr("move this statement"))));
+}
+
 /// The order means nothing there, so that nothing could be remembered.
 TEST(Formatting, InAnyOrderALoopIsALoop) {
   const std::string text = with_memory("F : LREAL;", "F := F + (X - F) * 0.1;\nY := F;");

@@ -8,7 +8,8 @@
 
 namespace hysteron {
 
-/// Also restrict, which is one of C alone, and errno, unix and linux, which are macros.
+/// Also restrict, which is one of C alone, and macros: errno, unix and linux; complex, imaginary and noreturn, where a
+/// program includes the headers of C11 that define them before a generated one.
 inline constexpr auto cpp_keywords = std::to_array<std::string_view>(
     {"alignas",     "alignof",   "and",        "and_eq",    "asm",      "auto",         "bitand",
      "bitor",       "bool",      "break",      "case",      "catch",    "char",         "char8_t",
@@ -23,7 +24,8 @@ inline constexpr auto cpp_keywords = std::to_array<std::string_view>(
      "static_cast", "struct",    "switch",     "template",  "this",     "thread_local", "throw",
      "true",        "try",       "typedef",    "typeid",    "typename", "union",        "unsigned",
      "using",       "virtual",   "void",       "volatile",  "wchar_t",  "while",        "xor",
-     "xor_eq",      "errno",     "restrict",   "unix",      "linux"});
+     "xor_eq",      "errno",     "restrict",   "unix",      "linux",    "complex",      "imaginary",
+     "noreturn"});
 
 /// What the generated text calls its own.
 inline constexpr auto cpp_own_words =

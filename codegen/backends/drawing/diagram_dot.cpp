@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "codegen/backends/drawing/body_text.hpp"
+#include "codegen/backends/drawing/box_label.hpp"
 #include "codegen/backends/drawing/dot_text.hpp"
 #include "codegen/graph/definition.hpp"
 #include "codegen/graph/units.hpp"
@@ -27,6 +29,7 @@ constexpr std::string_view port_fill = "#d5e8d4";
 constexpr std::string_view parameter_fill = "#fff2cc";
 constexpr std::string_view block_fill = "#dae8fc";
 constexpr std::string_view expression_fill = "#f5f5f5";
+
 /// Where a signal comes from: a box, its port where it has several, the type that it carries.
 struct Source {
   std::string box{};
@@ -55,22 +58,14 @@ class Drawing {
     const Definition& top = definitions_.list[definitions_.by_name.at(upper(name_))];
     std::string title = fmt::format("<B>{}</B>", dot::escaped(name_));
     if (sample_time_ns_ > 0) {
-      title += dot::small_text("  TS = " + duration_of(sample_time_ns_));
+      title += dot::small_text("  TS = " + dot::duration_of(sample_time_ns_));
     }
     for (const auto& annotation : top.block->annotations) {
       if (annotation.key == "doc") {
         title += "<BR/>" + dot::small_text(annotation.value);
       }
     }
-    text_ = fmt::format(
-        "digraph {} {{\n"
-        "  graph [rankdir=LR, label=<{}>, labelloc=t, fontname=\"Helvetica,Arial,sans-serif\", fontsize=14, "
-        "nodesep=0.22, ranksep=0.55, splines=true, bgcolor=white];\n"
-        "  node [shape=box, style=\"rounded,filled\", fontname=\"Helvetica,Arial,sans-serif\", fontsize=11, "
-        "margin=\"0.10,0.05\", height=0.3, penwidth=0.8];\n"
-        "  edge [arrowsize=0.6, penwidth=0.9, fontname=\"Helvetica,Arial,sans-serif\", fontsize=9, "
-        "fontcolor=\"{}\"];\n\n",
-        dot::quoted(name_), title, dot::faint);
+    text_ = dot::opening(name_, title);
     draw(top, "", 1);
     text_ += "\n" + edges_ + "}\n";
     return {.text = std::move(text_), .boxes = boxes_};
@@ -120,19 +115,6 @@ class Drawing {
                           style.empty() ? "" : fmt::format(" [{}]", fmt::join(style, ", ")));
   }
 
-  static std::string duration_of(std::int64_t nanoseconds) {
-    for (const auto& [factor, unit] : {std::pair{1'000'000'000, "s"}, {1'000'000, "ms"}, {1'000, "µs"}}) {
-      if (nanoseconds % factor == 0) {
-        return fmt::format("{} {}", nanoseconds / factor, unit);
-      }
-    }
-    return fmt::format("{} ns", nanoseconds);
-  }
-
-  static std::string with_unit(std::string_view name, std::string_view unit) {
-    return unit.empty() || unit == "1" ? dot::escaped(name) : dot::escaped(name) + " " + dot::small_text(unit);
-  }
-
   // --- a block of the text: its ports, its instances, its expressions ---
 
   void draw(const Definition& definition, const std::string& prefix, std::size_t level) {
@@ -161,6 +143,9 @@ class Drawing {
       }
     }
     draw_ports(scope, Declared::Kind::Output, "sink");
+    if (definition.block->sequential) {
+      return draw_body_by_itself(scope);
+    }
     for (const Declared& declared : definition.variables) {
       if (declared.kind == Declared::Kind::Output) {
         if (auto from = source_of_variable(scope, declared)) {
@@ -198,7 +183,7 @@ class Drawing {
       line(scope.level, fmt::format("{{ rank={};", rank));
     }
     for (const Declared* const port : ports) {
-      box(scope.level + (at_border ? 1 : 0), port_box(scope, *port), with_unit(port->field.name, port->field.unit),
+      box(scope.level + (at_border ? 1 : 0), port_box(scope, *port), dot::with_unit(port->field.name, port->field.unit),
           kind == Declared::Kind::Parameter ? parameter_fill : port_fill,
           kind == Declared::Kind::Parameter ? ", style=\"rounded,filled,dashed\"" : ", style=filled");
     }
@@ -211,7 +196,6 @@ class Drawing {
   [[nodiscard]] bool is_driven(const Scope& scope, const Declared& declared) const {
     return driven_.contains(upper(scope.prefix + std::string(declared.field.name)));
   }
-
   [[nodiscard]] bool is_reference(ExpressionId id) const {
     return std::holds_alternative<language::Reference>(expression(id).node);
   }
@@ -240,10 +224,12 @@ class Drawing {
       }
     }
     if (declared->kind == Declared::Kind::LibraryBlock) {
-      draw_library(scope, *declared, call, path);
-      return;
+      return draw_library(scope, *declared, call, path);
     }
     const Definition& inner = definitions_.list[declared->definition];
+    if (inner.block->sequential) {
+      return draw_body(scope, *declared, call, path);
+    }
     line(scope.level, fmt::format("subgraph {} {{", dot::quoted("cluster_" + path)));
     line(scope.level + 1,
          fmt::format("graph [label=<<B>{}</B> {}>, style=\"rounded\", color=\"{}\", fontsize=11, margin=12];",
@@ -278,45 +264,75 @@ class Drawing {
     return list;
   }
 
+  [[nodiscard]] bool is_wired(const Scope& scope, const language::Call& call, std::string_view pin) const {
+    return std::ranges::any_of(call.arguments, [&](const language::Argument& argument) {
+      return language::same_name(argument.pin.text, pin) && !is_constant(scope, argument.value);
+    });
+  }
+
   void draw_library(const Scope& scope, const Declared& declared, const language::Call& call, const std::string& path) {
     const BlockType& block = *declared.block;
-    std::vector<std::string> left;
-    std::vector<std::string> right;
+    dot::BoxLabel label(declared.field.name, block.about.name, settings_of(declared, call, scope));
     for (std::size_t pin = 0; pin < block.pin_count(); ++pin) {
       const Field& field = block.pin(pin);
-      const bool wired = std::ranges::any_of(call.arguments, [&](const language::Argument& argument) {
-        return language::same_name(argument.pin.text, field.name) && !is_constant(scope, argument.value);
-      });
-      if (wired) {
-        left.push_back(
-            fmt::format("<TD PORT={} ALIGN=\"LEFT\">{}</TD>", dot::quoted(pin_port(field.name)),
-                        with_unit(field.name, field.unit.find('\'') == std::string_view::npos ? field.unit : "")));
+      if (is_wired(scope, call, field.name)) {
+        label.add_input(field.name, field.unit.find('\'') == std::string_view::npos ? field.unit : "");
       }
     }
     for (const Field& output : block.outputs) {
       if (is_read(scope, declared, output.name)) {
         const auto unit = units_.find(upper(fmt::format("{}.{}", path, output.name)));
-        right.push_back(fmt::format("<TD PORT={} ALIGN=\"RIGHT\">{}</TD>", dot::quoted(output_port(output.name)),
-                                    with_unit(output.name, unit == units_.end() ? "" : unit->second)));
+        label.add_output(output.name, unit == units_.end() ? "" : unit->second);
       }
     }
-    std::string label = fmt::format(
-        "<TABLE BORDER=\"0\" CELLBORDER=\"0\" CELLSPACING=\"0\" CELLPADDING=\"2\"><TR><TD "
-        "COLSPAN=\"2\"><B>{}</B></TD></TR>"
-        "<TR><TD COLSPAN=\"2\">{}</TD></TR>",
-        dot::escaped(declared.field.name), dot::small_text(block.about.name));
-    for (const std::string& one : dot::lines_of(settings_of(declared, call, scope))) {
-      label += fmt::format("<TR><TD COLSPAN=\"2\">{}</TD></TR>", dot::small_text(one));
-    }
-    for (std::size_t i = 0; i < std::max(left.size(), right.size()); ++i) {
-      label += fmt::format("<TR>{}{}</TR>", i < left.size() ? left[i] : "<TD></TD>",
-                           i < right.size() ? right[i] : "<TD></TD>");
-    }
-    box(scope.level, path, label + "</TABLE>", block_fill);
+    box(scope.level, path, label.text(), block_fill);
   }
 
-  static std::string pin_port(std::string_view name) { return fmt::format("in {}", upper(name)); }
-  static std::string output_port(std::string_view name) { return fmt::format("out {}", upper(name)); }
+  // --- a block with a sequential body: a box with its statements ---
+
+  /// The statements of a body; of several instances the first shows them.
+  std::string body_of(const Definition& definition) {
+    const auto& source = *definitions_.source;
+    return shown_bodies_.insert(&definition).second
+               ? dot::body_text(source, source.bodies->units[definition.block->body])
+               : std::string();
+  }
+
+  void draw_body(const Scope& scope, const Declared& declared, const language::Call& call, const std::string& path) {
+    const Definition& inner = definitions_.list[declared.definition];
+    dot::BoxLabel label(declared.field.name, inner.block->name.text, settings_of(declared, call, scope));
+    for (const Declared& one : inner.variables) {
+      if (is_input(one) && is_wired(scope, call, one.field.name)) {
+        label.add_input(one.field.name, one.field.unit);
+      } else if (one.kind == Declared::Kind::Output && is_read(scope, declared, one.field.name)) {
+        label.add_output(one.field.name, one.field.unit);
+      }
+    }
+    label.add_body(body_of(inner));
+    box(scope.level, path, label.text(), block_fill);
+  }
+
+  /// The block that is drawn is a body itself: its statements stand between its ports.
+  void draw_body_by_itself(const Scope& scope) {
+    const std::string path = "(body)";
+    dot::BoxLabel label(name_, "", {});
+    for (const Declared& one : scope.definition->variables) {
+      if (is_input(one)) {
+        label.add_input(one.field.name, "");
+        edge({.box = port_box(scope, one), .type = one.field.type}, path, dot::pin_port(one.field.name), 1);
+      } else if (one.kind == Declared::Kind::Output) {
+        label.add_output(one.field.name, "");
+        const std::string port = dot::output_port(one.field.name);
+        edge({.box = path, .port = port, .type = one.field.type}, port_box(scope, one), "", 1);
+      }
+    }
+    label.add_body(body_of(*scope.definition));
+    box(scope.level, path, label.text(), block_fill);
+  }
+
+  static bool is_input(const Declared& declared) {
+    return declared.kind == Declared::Kind::Input || declared.kind == Declared::Kind::Parameter;
+  }
 
   /// Whether any statement of the scope reads an output.
   [[nodiscard]] bool is_read(const Scope& scope, const Declared& declared, std::string_view output) const {
@@ -349,8 +365,9 @@ class Drawing {
       const bool own = declared->kind == Declared::Kind::UserBlock;
       const Definition* const inner = own ? &definitions_.list[declared->definition] : nullptr;
       const Declared* const port = own ? find(*inner, argument.pin.text) : nullptr;
-      const std::string to = own ? fmt::format("{}.{} (port)", path, port->field.name) : path;
-      const std::string pin = own ? std::string() : pin_port(argument.pin.text);
+      const bool framed = own && !inner->block->sequential;
+      const std::string to = framed ? fmt::format("{}.{} (port)", path, port->field.name) : path;
+      const std::string pin = framed ? std::string() : dot::pin_port(argument.pin.text);
       if (const auto* reference = std::get_if<language::Reference>(&expression(argument.value).node)) {
         if (auto from = source_of(scope, *reference)) {
           edge(*from, to, pin, reader);
@@ -389,14 +406,21 @@ class Drawing {
       for (const Field& output : declared->block->outputs) {
         if (language::same_name(output.name, reference.pin.text)) {
           return Source{.box = scope.prefix + std::string(declared->field.name),
-                        .port = output_port(output.name),
+                        .port = dot::output_port(output.name),
                         .type = output.type,
                         .statement = statement_of(scope, reference.name.text)};
         }
       }
     }
     if (declared->kind == Declared::Kind::UserBlock) {
-      const Declared* const output = find(definitions_.list[declared->definition], reference.pin.text);
+      const Definition& inner = definitions_.list[declared->definition];
+      const Declared* const output = find(inner, reference.pin.text);
+      if (inner.block->sequential) {
+        return Source{.box = scope.prefix + std::string(declared->field.name),
+                      .port = dot::output_port(output->field.name),
+                      .type = output->field.type,
+                      .statement = statement_of(scope, reference.name.text)};
+      }
       return Source{.box = fmt::format("{}{}.{} (port)", scope.prefix, declared->field.name, output->field.name),
                     .type = output->field.type,
                     .statement = statement_of(scope, reference.name.text)};
@@ -459,6 +483,7 @@ class Drawing {
   std::map<std::string, std::string> units_;  ///< by output of a library block, in upper case
   std::string name_;
   std::int64_t sample_time_ns_ = 0;
+  std::set<const Definition*> shown_bodies_;
   std::set<std::string> driven_;  ///< pins that wires lead to, in upper case
   std::string text_;
   std::string edges_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace hysteron::dot {
 namespace {
 
@@ -10,6 +12,27 @@ constexpr std::size_t line_length = 30;
 constexpr std::size_t most_lines = 4;
 
 }  // namespace
+
+std::string opening(std::string_view name, std::string_view title) {
+  return fmt::format(
+      "digraph {} {{\n"
+      "  graph [rankdir=LR, label=<{}>, labelloc=t, fontname=\"Helvetica,Arial,sans-serif\", fontsize=14, "
+      "nodesep=0.22, ranksep=0.55, splines=true, bgcolor=white];\n"
+      "  node [shape=box, style=\"rounded,filled\", fontname=\"Helvetica,Arial,sans-serif\", fontsize=11, "
+      "margin=\"0.10,0.05\", height=0.3, penwidth=0.8];\n"
+      "  edge [arrowsize=0.6, penwidth=0.9, fontname=\"Helvetica,Arial,sans-serif\", fontsize=9, "
+      "fontcolor=\"{}\"];\n\n",
+      quoted(name), title, faint);
+}
+
+std::string duration_of(std::int64_t nanoseconds) {
+  for (const auto& [factor, unit] : {std::pair{1'000'000'000, "s"}, {1'000'000, "ms"}, {1'000, "µs"}}) {
+    if (nanoseconds % factor == 0) {
+      return fmt::format("{} {}", nanoseconds / factor, unit);
+    }
+  }
+  return fmt::format("{} ns", nanoseconds);
+}
 
 std::string escaped(std::string_view text) {
   std::string result;

@@ -1,6 +1,7 @@
 // Texts in the language of Graphviz: names in quotes, labels in its HTML.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,12 @@
 namespace hysteron::dot {
 
 inline constexpr std::string_view faint = "#5a5a5a";  ///< the colour of what is beside the point
+
+/// How a picture begins: its name, its title as a label, and what all boxes and wires have in common.
+std::string opening(std::string_view name, std::string_view title);
+
+/// 50 µs, 1 ms.
+std::string duration_of(std::int64_t nanoseconds);
 
 /// A name, in quotes.
 std::string quoted(std::string_view text);

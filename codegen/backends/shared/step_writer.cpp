@@ -128,6 +128,20 @@ std::string_view StepWriter::name_of(const Statement& definition) {
   return locals_.make({owner, definition.field, definition.what});
 }
 
+/// Of a value that no statement of the step defines.
+std::string_view StepWriter::name_of(ValueId shared) {
+  if (is_output(shared)) {
+    return output_name(output_of_value[shared]);
+  }
+  if (shared < cell_of_value.size() && cell_of_value[shared] != no_value) {
+    const CellInfo& cell = routine.cells[cell_of_value[shared]];
+    if (cell.node == section_) {
+      return locals_.make({cell.instance, cell.field.name, "next"});
+    }
+  }
+  return locals_.make({graph.nodes[section_].owner(), word_for(routine.tape[shared])});
+}
+
 /// Defines every value below a root that needs a name.
 void StepWriter::write_shared(ValueId root, bool with_root, std::string& text) {
   struct Visit {
@@ -151,10 +165,7 @@ void StepWriter::write_shared(ValueId root, bool with_root, std::string& text) {
       } else if (wanted && own != no_value && array_of_[own] != no_array && !arrays_[array_of_[own]].is_begun) {
         write_array(arrays_[array_of_[own]], text);
       } else if (wanted && (needs_name(id) || own != no_value)) {
-        write_definition(id,
-                         own != no_value ? name_of(routine.step[own])
-                                         : locals_.make({graph.nodes[section_].owner(), word_for(value)}),
-                         text);
+        write_definition(id, own != no_value ? name_of(routine.step[own]) : name_of(id), text);
       }
       continue;
     }

@@ -95,6 +95,8 @@ class StepWriter {
   ExpressionPrinter& expressions;
   /// By value: the output whose variable it is from its computation on, or no_value; empty: none.
   std::vector<std::uint32_t> output_of_value{};
+  /// By value: the cell that it becomes, whose name it then has; empty: none.
+  std::vector<std::uint32_t> cell_of_value{};
   [[nodiscard]] bool is_output(ValueId id) const {
     return id < output_of_value.size() && output_of_value[id] != no_value;
   }
@@ -219,6 +221,7 @@ class StepWriter {
                                                                std::string& text);
 
   std::string_view name_of(const Statement& definition);
+  std::string_view name_of(ValueId shared);
 
   Identifiers& locals_;
   std::vector<std::uint32_t> own_definition_;  ///< by value: where the step defines it by the name of a port or state

@@ -45,9 +45,7 @@ class StBlock {
 
  private:
   std::string write_body() {
-    if (library_) {
-      writer_.name_outputs_at_once(ahead_);
-    }
+    writer_.name_outputs_at_once(ahead_, library_);
     std::string text;
     if (!sections_.has_no_memory()) {
       write_beginning(text);

@@ -6,6 +6,7 @@
 #include <array>
 #include <unordered_set>
 
+#include "codegen/backends/st/c_names.hpp"
 #include "codegen/graph/names.hpp"
 #include "codegen/language/syntax.hpp"
 #include "support/element_name.hpp"
@@ -114,6 +115,28 @@ constexpr auto vendor_words = std::to_array<std::string_view>({
     "UPPER_BOUND",
     "LTIME_OF_DAY",
     "LDATE_AND_TIME",
+    // MATIEC and STruC++, and the C that they make
+    "DREF",
+    "END_GET",
+    "END_SET",
+    "REFERENCE_TO",
+    "FILE",
+    "STRING_VAR",
+    "WSTRING_VAR",
+    "UNKNOWN_ENUM",
+});
+
+/// Functions of the standard that have a form for each type: ADD_INT, MAX_TIME, MUX_DINT_REAL.
+constexpr auto typed_functions = std::to_array<std::string_view>({
+    "ABS", "SQRT", "LN",   "LOG",   "EXP",  "SIN",    "COS",    "TAN",    "ASIN",    "ACOS", "ATAN",  "ADD",
+    "SUB", "MUL",  "DIV",  "MOD",   "EXPT", "MOVE",   "SHL",    "SHR",    "ROL",     "ROR",  "AND",   "OR",
+    "XOR", "NOT",  "SEL",  "MAX",   "MIN",  "LIMIT",  "MUX",    "GT",     "GE",      "EQ",   "LE",    "LT",
+    "NE",  "LEN",  "LEFT", "RIGHT", "MID",  "CONCAT", "INSERT", "DELETE", "REPLACE", "FIND", "TRUNC",
+});
+
+constexpr auto typed_function_types = std::to_array<std::string_view>({
+    "BOOL", "BYTE",  "WORD",  "DWORD", "LWORD", "SINT", "INT",  "DINT", "LINT", "USINT",
+    "UINT", "UDINT", "ULINT", "REAL",  "LREAL", "TIME", "DATE", "TOD",  "DT",   "STRING",
 });
 
 /// Of TIA Portal.
@@ -173,11 +196,43 @@ bool is_instruction(std::string_view upper) {
   return std::ranges::find(instruction_words, upper) != instruction_words.end();
 }
 
-/// LREAL_TO_DINT and its like.
+/// LREAL_TO_DINT, BCD_TO_UINT and their like.
 bool is_conversion(std::string_view name) {
   const auto middle = name.find("_TO_");
-  return middle != std::string_view::npos && is_reserved(name.substr(0, middle)) &&
-         is_reserved(name.substr(middle + 4));
+  const auto is_side = [](std::string_view side) { return side == "BCD" || is_reserved(side); };
+  return middle != std::string_view::npos && is_side(name.substr(0, middle)) && is_side(name.substr(middle + 4));
+}
+
+/// A function with the types of its arguments behind it.
+bool is_typed_function(std::string_view name) {
+  std::size_t underscore = name.find('_');
+  if (underscore == std::string_view::npos ||
+      std::ranges::find(typed_functions, name.substr(0, underscore)) == typed_functions.end()) {
+    return false;
+  }
+  while (underscore != std::string_view::npos) {
+    const std::size_t begin = underscore + 1;
+    underscore = name.find('_', begin);
+    if (std::ranges::find(typed_function_types, name.substr(begin, underscore - begin)) == typed_function_types.end()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// What the C is made of that some compilers make of Structured Text.
+bool is_c_name(std::string_view name) {
+  static const std::unordered_set<std::string_view> names = [] {
+    std::unordered_set<std::string_view> list;
+    for (std::string_view rest = c_names_in_capitals; !rest.empty();) {
+      const auto length = std::min(rest.find_first_of(" \n"), rest.size());
+      list.insert(rest.substr(0, length));
+      rest.remove_prefix(std::min(length + 1, rest.size()));
+    }
+    list.erase("");
+    return list;
+  }();
+  return name.starts_with("IEC_") || names.contains(name);
 }
 
 }  // namespace
@@ -185,7 +240,8 @@ bool is_conversion(std::string_view name) {
 bool is_st_word(std::string_view name) {
   static const std::unordered_set<std::string_view> words(vendor_words.begin(), vendor_words.end());
   const std::string upper = language::upper(name);
-  return words.contains(upper) || is_instruction(upper) || is_reserved(upper) || is_conversion(upper);
+  return words.contains(upper) || is_instruction(upper) || is_reserved(upper) || is_conversion(upper) ||
+         is_typed_function(upper) || is_c_name(upper);
 }
 
 bool is_scl_word(std::string_view name) {

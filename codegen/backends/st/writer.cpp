@@ -18,6 +18,12 @@ StWriter::StWriter(const Graph& the_graph, const Routine& the_routine, StPrinter
       layout_(layout),
       identifiers_(the_locals) {
   must_be_named = printer.guards().must_be_named();
+  cell_of_value.assign(routine.tape.size(), no_value);
+  for (const Statement& one : routine.step) {
+    if (one.kind == Statement::Kind::SetCell && cell_of_value[one.value] == no_value) {
+      cell_of_value[one.value] = one.target;
+    }
+  }
   printer.print_variable(names.place, place_);
 }
 
@@ -36,11 +42,16 @@ void StWriter::write_counter(std::string& text) const {
   }
 }
 
-void StWriter::name_outputs_at_once(const std::vector<bool>& ahead) {
+void StWriter::name_outputs_at_once(const std::vector<bool>& ahead, bool single_pins) {
   output_of_value.assign(routine.tape.size(), no_value);
+  std::vector<bool> is_element(routine.tape.size(), false);
   for (const Statement& one : routine.step) {
+    if (one.kind == Statement::Kind::Define && !single_pins) {
+      is_element[one.value] = is_element[one.value] || element_of(one.field);
+    }
     const bool late = one.target < ahead.size() && ahead[one.target];
-    if (one.kind == Statement::Kind::SetOutput && !late && output_of_value[one.value] == no_value) {
+    if (one.kind == Statement::Kind::SetOutput && !late && output_of_value[one.value] == no_value &&
+        !is_element[one.value] && !element_of(layout_.outputs[one.target])) {
       output_of_value[one.value] = one.target;
     }
   }

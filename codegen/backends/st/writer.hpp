@@ -25,8 +25,9 @@ class StWriter final : public StepWriter {
   StWriter(const Graph& the_graph, const Routine& the_routine, StPrinter& printer, Identifiers& the_locals,
            const Layout& layout, const StNames& names);
 
-  /// Values that are an output as they stand get its name at once.
-  void name_outputs_at_once(const std::vector<bool>& ahead);
+  /// Values that are an output as they stand get its name at once, but for those that `ahead` leaves for the end. So do
+  /// elements of vectors where each is a pin of its own.
+  void name_outputs_at_once(const std::vector<bool>& ahead, bool single_pins);
   /// What stands within an IF of the block's own.
   void indent(std::string_view spaces) { indentation = outer_indentation = spaces; }
   void write_reset_body(std::string& text);

@@ -114,9 +114,11 @@ void hold_c_against_interpreted(std::string_view compiler) {
 TEST(GeneratedC, NamesAndCommentsAreSafe) {
   const Program program = compile_text(
       "FUNCTION_BLOCK PRINTF (* @ts 1ms *) VAR_INPUT RESTRICT : LREAL; (* @doc ends in \\ *)\n"
-      "INLINE : LREAL; STATE : DINT; END_VAR VAR_OUTPUT FABS : LREAL; PARAMS : LREAL; REAL_MIN : DINT; END_VAR\n"
-      "VAR POW : HY_GAIN := (K := 3.0); END_VAR POW(XIN := RESTRICT);\n"
-      "FABS := EXP(POW.XOUT) + MIN(POW.XOUT, INLINE) ** INLINE; PARAMS := FABS + POW.XOUT; REAL_MIN := STATE + 1;\n"
+      "INLINE, NORETURN : LREAL; STATE : DINT; END_VAR VAR_OUTPUT FABS : LREAL; PARAMS : LREAL; REAL_MIN : DINT; "
+      "END_VAR\n"
+      "VAR POW : HY_GAIN := (K := 3.0); COMPLEX : HY_LAG; END_VAR POW(XIN := RESTRICT); COMPLEX(XIN := NORETURN);\n"
+      "FABS := EXP(POW.XOUT) + COMPLEX.XOUT + MIN(POW.XOUT, INLINE) ** INLINE; PARAMS := FABS + POW.XOUT; REAL_MIN := "
+      "STATE + 1;\n"
       "END_FUNCTION_BLOCK");
   const test::ScratchFolder folder;
   for (const GeneratedFile& file : generate_c(program)) {
@@ -124,6 +126,7 @@ TEST(GeneratedC, NamesAndCommentsAreSafe) {
   }
   const std::string build = fmt::format(
       "cd {0} && cc -fsyntax-only {1} {2} *.c > log 2>&1 && c++ -fsyntax-only -Wall -Wextra -Werror -x c++ -include "
+      "printf_2.h /dev/null >> log 2>&1 && cc -fsyntax-only -x c -include complex.h -include stdnoreturn.h -include "
       "printf_2.h /dev/null >> log 2>&1",
       folder.path().string(), c_warnings, cpp_numeric_flags);
   EXPECT_EQ(std::system(build.c_str()), 0) << test::contents_of(folder / "log").substr(0, 2000);

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "codegen/backends/cpp/cpp.hpp"
+#include "codegen/backends/st/c_names.hpp"
 #include "codegen/backends/st/st.hpp"
 #include "tests/codegen/backends/recorded_run.hpp"
 #include "tests/codegen/random_program.hpp"
@@ -169,6 +171,54 @@ void hold_through(const OutsideCompiler& compiler, std::string_view what,
       std::string(compiler.name).c_str(), std::string(what).c_str(), diagrams, finite, equal, outside_steps, steps);
 }
 
+/// A diagram whose block, inputs and variables have every name that C knows in capitals, and forms of functions that
+/// MATIEC has for each type.
+std::string diagram_of_c_names() {
+  std::vector<std::string> names{"MAX_TIME", "ADD_INT", "MUX_DINT_REAL", "BCD_TO_UINT", "IEC_LREAL", "STATE", "FLOAT"};
+  std::istringstream list{std::string(c_names_in_capitals)};
+  for (std::string name; list >> name;) {
+    names.push_back(name);
+  }
+  std::string inputs;
+  std::string variables;
+  std::string sums = "TOTAL_0 := 0.0;\n";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] != "NULL" && names[i] != "FILE" &&
+        names[i] != "M_PI") {  // a word of the language; names that are taken
+      (i % 2 == 0 ? inputs : variables) += names[i] + " : LREAL;\n";
+      sums += i % 2 == 0 ? "" : fmt::format("{} := SIN(X + {}.0);\n", names[i], i);
+      variables += fmt::format("TOTAL_{} : LREAL;\n", i + 1);
+      sums += fmt::format("TOTAL_{} := TOTAL_{} + {} * {};\n", i + 1, i, names[i], names[i]);
+    } else {
+      variables += fmt::format("TOTAL_{} : LREAL;\n", i + 1);
+      sums += fmt::format("TOTAL_{} := TOTAL_{};\n", i + 1, i);
+    }
+  }
+  return fmt::format(
+      "FUNCTION_BLOCK FILE (* @ts 1ms *)\nVAR_INPUT X : LREAL;\n{}END_VAR\nVAR_OUTPUT M_PI : LREAL; END_VAR\nVAR\n"
+      "TOTAL_0 : LREAL;\n{}END_VAR\n{}M_PI := TOTAL_{};\nEND_FUNCTION_BLOCK\n",
+      inputs, variables, sums, names.size());
+}
+
+void compile_names_that_c_knows(const OutsideCompiler& compiler) {
+  const char* const its_folder = std::getenv(std::string(compiler.variable).c_str());
+  if (its_folder == nullptr) {
+    GTEST_SKIP() << compiler.variable << " names no folder of " << compiler.name;
+  }
+  const test::ScratchFolder folder;
+  folder.write("all.st", generate_st(compile_text(diagram_of_c_names()), {.dialect = *st_dialect("portable")})[0].text);
+  folder.write(std::string(compiler.host_name), std::string(compiler.host) + "  (void)folder;\n  return 0;\n}\n");
+  const std::string build =
+      fmt::format(fmt::runtime(compiler.build), folder.path().string(), its_folder, cpp_numeric_flags);
+  EXPECT_EQ(std::system(build.c_str()), 0) << test::contents_of(folder / "log").substr(0, 3000);
+}
+
+TEST(StructuredText, ThroughMatiecNamesThatCKnowsCompile) {
+  compile_names_that_c_knows(matiec);
+}
+TEST(StructuredText, ThroughStrucppNamesThatCKnowsCompile) {
+  compile_names_that_c_knows(strucpp);
+}
 TEST(StructuredText, ThroughMatiecRandomProgramsHaveTheBitsOfTheInterpreter) {
   hold_through(matiec, "one block", generate_st);
 }

@@ -91,12 +91,53 @@ TEST(StText, NamesThatACompilerKeepsAreChangedAndTheHeadSaysSo) {
   EXPECT_THAT(st_of(diagram, "siemens-scl"), HasSubstr("NAME is called NAME_2"));
 }
 
+/// MATIEC makes C of the text, with all names in capitals: what is a macro there can be no name.
+TEST(StText, NamesThatCKnowsAreChanged) {
+  const std::string diagram =
+      "FUNCTION_BLOCK FILE (* @ts 1ms *) VAR_INPUT MAX_INPUT, EXP_1, MAX_TIME : LREAL; MOD_STATUS : BOOL; END_VAR\n"
+      "VAR_OUTPUT NAN : LREAL; STATE : BOOL; END_VAR VAR M_PI : HY_LAG; FLOAT : LREAL; END_VAR\n"
+      "FLOAT := SIN(MAX_INPUT) + EXP_1; M_PI(XIN := FLOAT * FLOAT + MAX_TIME); NAN := M_PI.XOUT; STATE := MOD_STATUS;\n"
+      "END_FUNCTION_BLOCK";
+  const std::string text = st_of(diagram);
+  for (const char* const name : {"FILE", "MAX_INPUT", "MAX_TIME", "MOD_STATUS", "NAN"}) {
+    EXPECT_THAT(text, HasSubstr(fmt::format("   {0} is called {0}_2:", name)));
+  }
+  EXPECT_THAT(text, HasSubstr("    EXP_1 : LREAL;"));
+  EXPECT_THAT(text, HasSubstr("  FLOAT := SIN(MAX_INPUT_2) + EXP_1;"));
+  for (const std::string& name : declared_names(text)) {
+    EXPECT_FALSE(is_st_word(name)) << name;
+  }
+}
+
 TEST(StText, WordsAreThoseOfTheStandardAndOfTheVendors) {
-  for (const char* const word : {"IF", "end_function_block", "Sel", "LIMIT", "R_TRIG", "LREAL_TO_DINT", "ST", "PID",
-                                 "ADR", "PERSISTENT", "REF", "S"}) {
+  for (const char* const word : {"IF",
+                                 "end_function_block",
+                                 "Sel",
+                                 "LIMIT",
+                                 "R_TRIG",
+                                 "LREAL_TO_DINT",
+                                 "ST",
+                                 "PID",
+                                 "ADR",
+                                 "PERSISTENT",
+                                 "REF",
+                                 "S",
+                                 "MAX_TIME",
+                                 "add_int",
+                                 "MUX_DINT_REAL",
+                                 "SUB_DATE_DATE",
+                                 "BCD_TO_UINT",
+                                 "M_PI",
+                                 "NAN",
+                                 "max_input",
+                                 "MOD_STATUS",
+                                 "EIO",
+                                 "FILE",
+                                 "IEC_LREAL"}) {
     EXPECT_TRUE(is_st_word(word)) << word;
   }
-  for (const char* const word : {"REFERENCE_1", "X_TO_Y", "SUM", "XIN", "NAME", "VERSION"}) {
+  for (const char* const word : {"REFERENCE_1", "X_TO_Y", "SUM", "XIN", "NAME", "VERSION", "STEP_TIME", "MAX_SPEED",
+                                 "MAX_TIME_1", "TIME_MAX", "MAX_", "INT_1", "FLOAT", "STATE", "PI", "VOID"}) {
     EXPECT_FALSE(is_st_word(word)) << word;
   }
   EXPECT_TRUE(is_scl_word("Version"));
@@ -161,14 +202,13 @@ TEST(StText, WhatWouldStopAPlcIsGuarded) {
   const auto y = [](const std::string& expression) {
     return body_of_expression("Y := " + expression + "; K := 0; Q := FALSE;");
   };
-  EXPECT_THAT(y("X / Z"), HasSubstr("  IF Z <> 0.0 THEN Y_QUOTIENT := X / Z;\n"
-                                    "  ELSE Y_QUOTIENT := SEL(X < 0.0, SEL(X > 0.0, 0.0, LARGEST), -LARGEST); END_IF;\n"
-                                    "  Y := Y_QUOTIENT;\n"));
+  EXPECT_THAT(y("X / Z"), HasSubstr("  IF Z <> 0.0 THEN Y := X / Z;\n"
+                                    "  ELSE Y := SEL(X < 0.0, SEL(X > 0.0, 0.0, LARGEST), -LARGEST); END_IF;\n"));
   EXPECT_THAT(y("X / 2.0"), HasSubstr("  Y := X / 2.0;\n"));
   EXPECT_THAT(y("X / (1.0 + ABS(Z))"), HasSubstr("  Y := X / (1.0 + ABS(Z));\n"));
   EXPECT_THAT(y("X / SEL(Z > 0.0, 1.0, Z)"), HasSubstr("  Y := X / SEL(0.0 < Z, 1.0, Z);\n"));
   EXPECT_THAT(y("X / SEL(Z > 0.0, Z, 1.0)"), HasSubstr("IF Y_CHOICE <> 0.0 THEN")) << "Z is at or below 0 there";
-  EXPECT_THAT(y("1.0 / Z"), HasSubstr("ELSE Y_QUOTIENT := LARGEST; END_IF;"));
+  EXPECT_THAT(y("1.0 / Z"), HasSubstr("ELSE Y := LARGEST; END_IF;"));
   EXPECT_THAT(y("SQRT(X)"), HasSubstr("  Y := SQRT(MAX(X, 0.0));\n"));
   EXPECT_THAT(y("SQRT(ABS(X))"), HasSubstr("  Y := SQRT(ABS(X));\n"));
   EXPECT_THAT(y("LN(X)"), HasSubstr("  Y := LN(SEL(X > 0.0, 1.2E-38, X));\n"));
@@ -176,19 +216,46 @@ TEST(StText, WhatWouldStopAPlcIsGuarded) {
   EXPECT_THAT(y("X ** 3.0"), HasSubstr("  Y := EXPT(X, LREAL#3.0);\n"));
   EXPECT_THAT(y("X ** 2.0"), HasSubstr("  Y := X * X;\n"));
   EXPECT_THAT(y("X ** 1.5"), HasSubstr("  Y := EXPT(MAX(X, 0.0), LREAL#1.5);\n"));
-  EXPECT_THAT(y("X ** (-2.0)"), HasSubstr("IF X <> 0.0 THEN Y_POWER := EXPT(X, -LREAL#2.0);\n"));
-  EXPECT_THAT(y("X ** (-0.5)"), HasSubstr("IF X > 0.0 THEN Y_POWER := EXPT(X, -LREAL#0.5);\n"));
-  EXPECT_THAT(y("X ** Z"), HasSubstr("  ELSIF X > 0.0 THEN Y_POWER := EXPT(X, Z);\n"));
+  EXPECT_THAT(y("X ** (-2.0)"), HasSubstr("IF X <> 0.0 THEN Y := EXPT(X, -LREAL#2.0);\n"));
+  EXPECT_THAT(y("X ** (-0.5)"), HasSubstr("IF X > 0.0 THEN Y := EXPT(X, -LREAL#0.5);\n"));
+  EXPECT_THAT(y("X ** Z"), HasSubstr("  ELSIF X > 0.0 THEN Y := EXPT(X, Z);\n"));
+}
+
+/// Where a value is an output as it stands, it has the output's name from its computation on.
+TEST(StText, OutputsKeepTheirOwnNames) {
+  const std::string text = st_of(
+      "FUNCTION_BLOCK OWN (* @ts 1ms *) VAR_INPUT X, Z : LREAL; V : ARRAY[0..3] OF LREAL; END_VAR\n"
+      "VAR_OUTPUT Y, Q, COPY, SLOW, ONE : LREAL; ALL_OF_IT : ARRAY[0..3] OF LREAL; END_VAR\n"
+      "VAR L : HY_LIMIT := (MN := -1.0, MX := 1.0); G : LREAL; S : HY_SAMPLE; (* @every 4 *) H : HY_HOLD; W : "
+      "ARRAY[0..3] OF LREAL;\n"
+      "P : HY_PID; END_VAR\n"
+      "L(XIN := X); Y := L.XOUT; G := Y * Z; Q := G + G; COPY := Y; S(XIN := Q); H(XIN := S.XOUT); SLOW := H.XOUT;\n"
+      "W := V * Y; ALL_OF_IT := W; ONE := W[2] * W[2]; P(SP := X, PV := Y); END_FUNCTION_BLOCK");
+  EXPECT_THAT(text, HasSubstr("  Y := MIN(MAX(X, L_MN), L_MX);\n"));
+  EXPECT_THAT(text, Not(HasSubstr("L_XOUT")));
+  EXPECT_THAT(text, HasSubstr("  G := Y * Z;\n  Q := G + G;\n"));
+  EXPECT_THAT(text, HasSubstr("  COPY := Y;\n")) << "a second name of the same value";
+  EXPECT_THAT(text, HasSubstr("    S_XOUT := Q;\n"));
+  EXPECT_THAT(text, HasSubstr("  SLOW := S_XOUT;\n"));
+  EXPECT_THAT(text, HasSubstr("P_INTEGRAL := P_INTEGRAL_NEXT;\n")) << "what a memory becomes is called after it";
+  for (const char* const output : {"Y", "Q", "COPY", "SLOW", "ONE"}) {
+    std::size_t assignments = 0;
+    const std::string assigned = fmt::format(" {} := ", output);
+    for (std::size_t at = text.find(assigned); at != std::string::npos; at = text.find(assigned, at + 1)) {
+      ++assignments;
+    }
+    EXPECT_EQ(assignments, 1U) << output;
+  }
 }
 
 TEST(StText, IntegersKeepTheirRange) {
   const auto k = [](const std::string& expression) {
     return body_of_expression("Y := 0.0; K := " + expression + "; Q := FALSE;");
   };
-  EXPECT_THAT(k("N / M"), HasSubstr("  IF M = 0 THEN K_QUOTIENT := 0;\n  ELSIF M = -1 THEN K_QUOTIENT := 0 - N;\n"
-                                    "  ELSE K_QUOTIENT := N / M; END_IF;\n"));
+  EXPECT_THAT(k("N / M"), HasSubstr("  IF M = 0 THEN K := 0;\n  ELSIF M = -1 THEN K := 0 - N;\n"
+                                    "  ELSE K := N / M; END_IF;\n"));
   EXPECT_THAT(k("N MOD 7"), HasSubstr("  K := N MOD 7;\n"));
-  EXPECT_THAT(k("TRUNC(X)"), HasSubstr("  IF X >= 2147483648.0 THEN K_WHOLE := 2147483647;\n"));
+  EXPECT_THAT(k("TRUNC(X)"), HasSubstr("  IF X >= 2147483648.0 THEN K := 2147483647;\n"));
   EXPECT_THAT(k("MAX(1, N)"), HasSubstr("  K := MAX(DINT#1, N);\n")) << "a plain 1 may be taken for a USINT";
 }
 

@@ -25,23 +25,25 @@ POINTS = (200, 10_000, 1_000_000)
 SAMPLES = (100_000, 1_000_000)
 
 CONTENDERS = {
-    "ours": Contender("ours", "defaults", "no start given, covariance included", "bench/static_fit_bench.cpp, bench/output_error_bench.cpp", True),
+    "ours": Contender("ours", "defaults", "of a map no start is given; covariance included",
+                      "bench/static_fit_bench.cpp, bench/output_error_bench.cpp", True),
     "ours_by_ipopt": Contender("ours, all by Ipopt", "`StaticMapMethod::Ipopt`", "three parameters at once, as rivals have them",
                                "bench/static_fit_bench.cpp", True),
     "scipy_lm": Contender("scipy, lm", "`method='lm'`; of output error `x_scale='jac'`", "MINPACK, differences",
-                          "bench/rivals/static_map_scipy.py, output_error_scipy.py"),
+                          "bench/rivals/static_map_scipy.py, bench/rivals/output_error_scipy.py"),
     "scipy_lm_exact": Contender("scipy, lm, exact", "`method='lm', jac=exact`", "", "bench/rivals/static_map_scipy.py"),
     "scipy_lm_unchecked": Contender("scipy, lm, exact, unchecked", "`method='lm', jac=exact, check_finite=False`",
                                     "no search for NaN", "bench/rivals/static_map_scipy.py"),
     "scipy_trf_unchecked": Contender("scipy, trf, exact, unchecked", "`method='trf', jac=exact, check_finite=False`", "",
                                      "bench/rivals/static_map_scipy.py"),
-    "scipy_lm_start": Contender("scipy, lm, scaled by the start", "`method='lm', x_scale=|start|`", "compiled model by ctypes",
+    "scipy_lm_start": Contender("scipy, lm, scaled by the start", "`method='lm', x_scale=abs(start)`", "compiled model by ctypes",
                                 "bench/rivals/output_error_scipy.py"),
     "scipy_trf": Contender("scipy, trf", "`method='trf', x_scale='jac'`", "compiled model by ctypes",
                            "bench/rivals/output_error_scipy.py"),
     "scipy_trf_bounds": Contender("scipy, trf with bounds", "`method='trf', x_scale='jac', bounds`",
                                   "a lower bound each, as the blocks have", "bench/rivals/output_error_scipy.py"),
-    "ceres_points_qr": Contender("Ceres, a cost a point, QR", "AutoDiffCostFunction, DENSE_QR", "as its tutorial; covariance included",
+    "ceres_points_qr": Contender("Ceres, a cost a point, QR", "AutoDiffCostFunction, DENSE_QR",
+                                 "as its tutorial; covariance included",
                                  "bench/rivals/static_map_ceres.cpp"),
     "ceres_points_cholesky": Contender("Ceres, a cost a point, Cholesky", "AutoDiffCostFunction, DENSE_NORMAL_CHOLESKY",
                                        "covariance included", "bench/rivals/static_map_ceres.cpp"),
@@ -59,7 +61,7 @@ CONTENDERS = {
                                     "bench/rivals/static_map_ipopt.cpp"),
     "ipopt_limited_memory": Contender("Ipopt, limited memory", "`hessian_approximation limited-memory`", "no covariance",
                                       "bench/rivals/static_map_ipopt.cpp"),
-    "casadi": Contender("CasADi", "", "", ""),
+    "casadi": Contender("CasADi", "nothing", "no package of Debian 12"),
     "double": Contender("the step without derivatives", OURS, "what both are measured against", "bench/dual_bench.cpp", True),
     "dual": Contender("Dual<3>", OURS, "derivatives by three parameters, in packs", "bench/dual_bench.cpp", True),
     "jet": Contender("ceres::Jet<double, 3>", OURS, "the same block", "bench/dual_bench.cpp"),
@@ -160,19 +162,27 @@ def of_benchmarks(pattern, repetitions, least_seconds="0.1"):
                 yield Row(subject, contender, note=error), None
             continue
         solution = [run[f"p{j}"] for j in range(9) if f"p{j}" in run]
-        yield Row(subject, contender, repetition, 1.0, seconds), solution
+        note = peak_text(run["peak"]) if size and kind == "output_error" else ""
+        yield Row(subject, contender, repetition, 1.0, seconds, note=note), solution
 
 
-def of_program(command, version, subject):
+def peak_text(peak):
+    """The most memory of a process, which ran all options of a rival."""
+    return f"{peak / 1e6:,.0f} MB"
+
+
+def of_program(command, version, subject, with_peak=False):
     """Rows of a rival that prints a line a repetition, each with its solution. `subject` makes one of its second word."""
     one_thread = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
-    done = subprocess.run(list(map(str, command)), check=True, capture_output=True, text=True, env={**os.environ, **one_thread})
+    lines, peak = measure.run_program(command, env={**os.environ, **one_thread})
+    note = peak_text(peak) if with_peak else ""
     seen = {}
-    for line in done.stdout.splitlines():
+    for line in lines.splitlines():
         contender, which, seconds, *solution = line.split()
         repetition = seen[(contender, which)] = seen.get((contender, which), -1) + 1
         if repetition < 2 * measure.REPETITIONS:
-            yield Row(subject(which), contender, repetition, 1.0, float(seconds), version=version), [float(x) for x in solution]
+            yield (Row(subject(which), contender, repetition, 1.0, float(seconds), version=version, note=note),
+                   [float(x) for x in solution])
 
 
 def compiled(source, name, libraries, more=()):
@@ -220,12 +230,13 @@ def rivals_on(model, subject, repetitions):
         import scipy
 
         yield from of_program([sys.executable, RIVALS / "output_error_scipy.py", model.library, *given], scipy.__version__,
-                              lambda _: subject)
+                              lambda _: subject, subject != PICMA)
     except ImportError:
         yield measure.left_out(subject, "scipy_lm", "scipy is not installed (python3-scipy)"), None
     try:
         program = compiled(RIVALS / "output_error_ceres.cpp", f"ceres_{model.object.parent.name}", CERES, (model.object,))
-        yield from of_program([program, *given], measure.debian_version("libceres-dev"), lambda _: subject)
+        yield from of_program([program, *given], measure.debian_version("libceres-dev"), lambda _: subject,
+                              subject != PICMA)
     except NotThere as why:
         yield measure.left_out(subject, "ceres_central", str(why)), None
 

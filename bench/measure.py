@@ -16,6 +16,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -161,17 +162,39 @@ def compiler_says(command, what):
     return f"{what} does not compile: {(errors or [done.stderr.strip()])[0]}"
 
 
+def run_program(command, **options):
+    """What a program prints, and the most memory that it had, in bytes. It is asked while the program runs: what the system
+    says afterwards begins with the memory of this script."""
+    with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as errors:
+        process = subprocess.Popen(list(map(str, command)), stdout=output, stderr=errors, **options)
+        peak = 0
+        while process.poll() is None:
+            peak = max(peak, most_memory(process.pid))
+            time.sleep(0.02)
+        output.seek(0)
+        errors.seek(0)
+        if process.returncode:
+            sys.exit(f"{command[0]} ended with {process.returncode}: {errors.read().strip()}")
+        return output.read(), peak
+
+
+def most_memory(pid):
+    try:
+        lines = pathlib.Path(f"/proc/{pid}/status").read_text().splitlines()
+    except OSError:
+        return 0
+    return next((1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM:")), 0)
+
+
 def run_benchmarks(pattern, arguments=(), repetitions=REPETITIONS, least_seconds="0.1"):
     """The repetitions of Google Benchmark, interleaved at random: name, repetition, seconds of processor time, counters,
     error."""
     with tempfile.TemporaryDirectory() as folder:
         output = pathlib.Path(folder) / "benchmarks.json"
-        done = subprocess.run(
+        _, peak = run_program(
             [Place.program(), *arguments, f"--benchmark_filter={pattern}", f"--benchmark_repetitions={repetitions}",
              "--benchmark_enable_random_interleaving=true", f"--benchmark_min_time={least_seconds}",
-             "--benchmark_out_format=json", f"--benchmark_out={output}"], capture_output=True, text=True)
-        if done.returncode:
-            sys.exit(f"hysteron_bench ended with {done.returncode}: {done.stderr.strip()}")
+             "--benchmark_out_format=json", f"--benchmark_out={output}"])
         runs = json.loads(output.read_text())["benchmarks"]
     units = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
     for run in runs:
@@ -179,6 +202,7 @@ def run_benchmarks(pattern, arguments=(), repetitions=REPETITIONS, least_seconds
             continue
         name = run["run_name"].removesuffix("/process_time").split("/iterations:")[0]
         seconds = run["cpu_time"] * units[run["time_unit"]]
+        run["peak"] = peak
         yield name, run.get("repetition_index", 0), seconds, run, run.get("error_message", "")
 
 
@@ -200,7 +224,7 @@ def duration(seconds):
 
 
 def times(ratio):
-    return f"{ratio:,.0f} ×" if ratio >= 100 else f"{ratio:.3g} ×" if ratio >= 10 or ratio < 0.1 else f"{ratio:.2f} ×"
+    return f"{ratio:,.0f} ×" if ratio >= 100 else f"{ratio:.3g} ×" if ratio >= 10 else f"{ratio:.2g} ×" if ratio < 0.1 else f"{ratio:.2f} ×"
 
 
 def text_table(head, rows):

@@ -5,7 +5,6 @@ usage: bench/page.py [--check]
 
 --check writes nothing; exit code 1 where a page is not what the rows say."""
 
-import pathlib
 import sys
 
 import batch
@@ -30,7 +29,7 @@ little elsewhere.
 
 def sections(question, rows):
     yield f"## {question.TITLE}"
-    yield question.__doc__.strip().split("\n\n", 1)[1]
+    yield question.__doc__.split("\n\n", 1)[1].strip()
     for heading, table in question.tables(rows):
         yield f"### {heading}"
         yield table

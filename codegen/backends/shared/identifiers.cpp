@@ -62,7 +62,8 @@ std::string_view Identifiers::make(std::initializer_list<std::string_view> parts
     text_.resize(length);
     text_ += '_';
     text_ += std::to_string(next_number_[base]++);
-    if (const auto numbered = taken_.add(text_); numbered.is_new) {
+    // The numbered name may be a word itself: M_PI_2 is one of C.
+    if (const auto numbered = taken_.add(text_); numbered.is_new && (is_word_ == nullptr || !is_word_(text_))) {
       return taken_[numbered.number];
     }
   }

@@ -232,7 +232,7 @@ bool is_c_name(std::string_view name) {
     list.erase("");
     return list;
   }();
-  return name.starts_with("IEC_") || names.contains(name);
+  return names.contains(name);
 }
 
 }  // namespace

@@ -174,7 +174,7 @@ void hold_through(const OutsideCompiler& compiler, std::string_view what,
 /// A diagram whose block, inputs and variables have every name that C knows in capitals, and forms of functions that
 /// MATIEC has for each type.
 std::string diagram_of_c_names() {
-  std::vector<std::string> names{"MAX_TIME", "ADD_INT", "MUX_DINT_REAL", "BCD_TO_UINT", "IEC_LREAL", "STATE", "FLOAT"};
+  std::vector<std::string> names{"MAX_TIME", "ADD_INT", "MUX_DINT_REAL", "BCD_TO_UINT", "STATE", "FLOAT"};
   std::istringstream list{std::string(c_names_in_capitals)};
   for (std::string name; list >> name;) {
     names.push_back(name);

@@ -94,14 +94,17 @@ TEST(StText, NamesThatACompilerKeepsAreChangedAndTheHeadSaysSo) {
 /// MATIEC makes C of the text, with all names in capitals: what is a macro there can be no name.
 TEST(StText, NamesThatCKnowsAreChanged) {
   const std::string diagram =
-      "FUNCTION_BLOCK FILE (* @ts 1ms *) VAR_INPUT MAX_INPUT, EXP_1, MAX_TIME : LREAL; MOD_STATUS : BOOL; END_VAR\n"
-      "VAR_OUTPUT NAN : LREAL; STATE : BOOL; END_VAR VAR M_PI : HY_LAG; FLOAT : LREAL; END_VAR\n"
-      "FLOAT := SIN(MAX_INPUT) + EXP_1; M_PI(XIN := FLOAT * FLOAT + MAX_TIME); NAN := M_PI.XOUT; STATE := MOD_STATUS;\n"
+      "FUNCTION_BLOCK FILE (* @ts 1ms *) VAR_INPUT MAX_INPUT, EXP_1, MAX_TIME, M_PI : LREAL; MOD_STATUS : BOOL; "
+      "END_VAR\n"
+      "VAR_OUTPUT NAN : LREAL; STATE : BOOL; END_VAR VAR LAG : HY_LAG; FLOAT : LREAL; END_VAR\n"
+      "FLOAT := SIN(MAX_INPUT) + EXP_1; LAG(XIN := FLOAT * FLOAT + MAX_TIME * M_PI); NAN := LAG.XOUT; STATE := "
+      "MOD_STATUS;\n"
       "END_FUNCTION_BLOCK";
   const std::string text = st_of(diagram);
   for (const char* const name : {"FILE", "MAX_INPUT", "MAX_TIME", "MOD_STATUS", "NAN"}) {
     EXPECT_THAT(text, HasSubstr(fmt::format("   {0} is called {0}_2:", name)));
   }
+  EXPECT_THAT(text, HasSubstr("   M_PI is called M_PI_3:")) << "M_PI_2 is a name of C, too";
   EXPECT_THAT(text, HasSubstr("    EXP_1 : LREAL;"));
   EXPECT_THAT(text, HasSubstr("  FLOAT := SIN(MAX_INPUT_2) + EXP_1;"));
   for (const std::string& name : declared_names(text)) {

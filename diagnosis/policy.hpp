@@ -54,6 +54,14 @@ inline constexpr Threshold model_error{
     "by how much the energies that two sets leave may differ for their formulas' sake, "
     "in all blocks alike",
     0.0};
+inline constexpr Threshold own_choice{
+    "own choice",
+    1.39,
+    "ln",
+    "convention: twice as good, in size",
+    "how much less a set has to leave that the search chose by this very run, among all that it tried, than one that "
+    "was found by predicting stretches",
+    0.0};
 inline constexpr Threshold reach{"reach", 10.0, "1", "convention: a decade",
                                  "how many times its value a known parameter may move beside a set: what moves it "
                                  "further cancels it, and is no cause"};
@@ -164,6 +172,7 @@ inline constexpr std::array all{work,
                                 rows,
                                 price,
                                 model_error,
+                                own_choice,
                                 reach,
                                 another_place,
                                 draws,

@@ -172,6 +172,7 @@ Runs runs_of(const std::vector<Told>& told, const Judged& judged, const Diagnosi
   for (const Explanation* const one : result.searched) {
     const bool is_chosen = one == result.searched.front();
     result.sets.push_back(run_of(*one, is_chosen ? judged.residuals() : one->fit.residuals, result.family_of));
+    result.sets.back().is_own_choice = !told.empty();
   }
   result.sets.push_back(nothing);
   result.votes = votes_of_runs(judged.record.task, result.sets, options.seed, options.prior, rules);

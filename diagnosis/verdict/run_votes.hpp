@@ -24,6 +24,7 @@ struct RunSet {
   VectorXd residuals{};                 ///< of all outputs, over the whole records
   std::vector<std::string> families{};  ///< of the effects, sorted, each once
   std::size_t effects = 0;
+  bool is_own_choice = false;  ///< chosen by its run, among thousands, where another was found without it
 };
 
 /// How often each set is the best, and how much that counts: to a sum of 1.

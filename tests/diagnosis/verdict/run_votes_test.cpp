@@ -71,6 +71,26 @@ TEST(RunVotes, SiblingsMakeTheirFamiliesMoreProbable) {
   EXPECT_GT(votes(recorded({"Y"}), sets, prior)[1], votes(recorded({"Y"}), sets)[1] + 0.1);
 }
 
+/// What a search chose by its run has to leave half of what another leaves, in size; of two such it counts no more.
+TEST(RunVotes, WhatWasChosenByItsRunMustBeTwiceAsGood) {
+  const auto of_search = [](RunSet set) {
+    set.is_own_choice = true;
+    return set;
+  };
+  const RunSet told = leaving({1.0}, {"dry_friction"}, 1);
+  const auto against_told = [&](double size) {
+    return votes(recorded({"Y"}), {told, of_search(leaving({size}, {"static_curve"}, 1, 2))})[1];
+  };
+  EXPECT_LT(against_told(0.7), 0.05);
+  EXPECT_NEAR(against_told(0.5), 0.5, 0.2);
+  EXPECT_GT(against_told(0.35), 0.95);
+  const std::vector<double> alone = votes(
+      recorded({"Y"}), {of_search(leaving({1.0}, {"play"}, 1)), of_search(leaving({0.7}, {"static_curve"}, 1, 2))});
+  EXPECT_GT(alone[1], 0.95);
+  const std::vector<RunSet> both{told, of_search(leaving({0.7}, {"play"}, 1, 2))};
+  EXPECT_GT(votes_of_runs(recorded({"Y"}), both, 1, {}, Rules({"own choice"}))[1], 0.9);  // without the rule
+}
+
 TEST(RunVotes, NoSetHasNoVotes) {
   EXPECT_TRUE(votes(recorded({"Y"}), {}).empty());
 }

@@ -72,7 +72,10 @@ TEST_F(Publishing, GivesEachRowWithItsTime) {
     bench.finish();
     EXPECT_FALSE(bench.count().is_connected);
     EXPECT_EQ(bench.said(), "");
-    ASSERT_TRUE(soon([&] { return subscriber.heard().back().payload.find("false") != std::string::npos; }));
+    ASSERT_TRUE(soon([&] {
+      const auto heard = subscriber.heard();
+      return !heard.empty() && heard.back().payload.find("false") != std::string::npos;
+    }));
     auto rows = subscriber.on("plant/data");
     rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(before));
     EXPECT_EQ(numbers_in(rows), grid(1000));
@@ -382,7 +385,10 @@ TEST_F(Publishing, ChangesAloneWhereTheyAreAskedFor) {
   bench.run(999);
   ASSERT_TRUE(bench.until_confirmed());
   bench.finish();
-  ASSERT_TRUE(soon([&] { return subscriber.heard().back().payload.find("false") != std::string::npos; }));
+  ASSERT_TRUE(soon([&] {
+    const auto heard = subscriber.heard();
+    return !heard.empty() && heard.back().payload.find("false") != std::string::npos;
+  }));
   const auto rows = subscriber.on("plant/data");
   EXPECT_EQ(json::parse(rows[0]).at("values").size(), 2U) << "the first is whole";
   const auto numbers = numbers_in(rows);
@@ -414,7 +420,10 @@ TEST_F(Publishing, AfterALossTheNextRowOfChangesIsWhole) {
   bench.run(20);
   ASSERT_TRUE(bench.until_confirmed());
   bench.finish();
-  ASSERT_TRUE(soon([&] { return subscriber.heard().back().payload.find("false") != std::string::npos; }));
+  ASSERT_TRUE(soon([&] {
+    const auto heard = subscriber.heard();
+    return !heard.empty() && heard.back().payload.find("false") != std::string::npos;
+  }));
   const auto rows = subscriber.on("plant/data");
   ASSERT_GT(rows.size(), 3U);
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -110,13 +110,16 @@ def read_rows(question, folder):
                     number(row["difference"]), row["version"], row["note"]) for row in csv.DictReader(file)]
 
 
+def processor():
+    return next((line.split(":", 1)[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+                 if line.startswith("model name")), platform.machine())
+
+
 def write_machine(question, folder):
     """A line of machine.csv: what this question was measured on. Lines of other questions stay."""
     path = folder / "machine.csv"
     lines = read_machines(folder)
-    model = next((line.split(":", 1)[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
-                  if line.startswith("model name")), platform.machine())
-    lines[question] = {"question": question, "processor": model, "processors": os.cpu_count(),
+    lines[question] = {"question": question, "processor": processor(), "processors": os.cpu_count(),
                        "system": system_name(), "compiler": first_line("c++", "--version"),
                        "load": f"{os.getloadavg()[0]:.1f}", "date": datetime.date.today().isoformat()}
     with open(path, "w", newline="", encoding="utf-8") as file:

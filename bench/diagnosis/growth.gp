@@ -1,6 +1,8 @@
-# Seconds of a diagnosis over samples and over candidates. gnuplot -c growth.gp FOLDER PICTURE
+# Seconds of a diagnosis over samples and over candidates. gnuplot -c growth.gp FOLDER PICTURE GOAL
 set terminal pngcairo size 1000,420 font "DejaVu Sans,11" linewidth 1.1
 set output ARG2
+goal = real(ARG3)
+what_goal = sprintf("goal: %.0f s", goal)
 set datafile separator comma
 samples = ARG1."/samples.csv"
 candidates = ARG1."/candidates.csv"
@@ -14,8 +16,8 @@ set tics nomirror out
 set logscale xy
 set format x "%'.0f"
 set ylabel "time [s]"
-set yrange [5:300]
-set ytics (5, 10, 20, 50, 100, 200)
+set yrange [1:100]
+set ytics (1, 2, 5, 10, 20, 50, 100)
 set key top left samplen 2
 set multiplot layout 1,2 margins 0.075,0.985,0.15,0.88 spacing 0.1,0
 
@@ -23,7 +25,7 @@ set title "All effects, by the length of the record"
 set xlabel "samples"
 set xrange [4000:50000]
 set xtics (5000, 10000, 20000, 40000)
-plot 60 with lines dt 2 lw 1 lc "#666666" title "goal: 60 s", \
+plot goal with lines dt 2 lw 1 lc "#666666" title what_goal, \
      exp(S_slope * log(x) + S_intercept) with lines lw 1 lc "#56b4e9" title sprintf("samples^{%.2f}", S_slope), \
      samples using 1:2 every ::1 with points pt 7 lc "#0072b2" title "measured"
 
@@ -31,6 +33,6 @@ set title "10,000 samples, by the candidates tried"
 set xlabel "candidates"
 set xrange [9:1100]
 set xtics (10, 30, 100, 300, 1000)
-plot 60 with lines dt 2 lw 1 lc "#666666" title "goal: 60 s", \
+plot goal with lines dt 2 lw 1 lc "#666666" title what_goal, \
      exp(C_slope * log(x) + C_intercept) with lines lw 1 lc "#56b4e9" title sprintf("candidates^{%.2f}", C_slope), \
      candidates using 1:2 every ::1 with points pt 7 lc "#0072b2" title "measured"

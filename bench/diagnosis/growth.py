@@ -146,7 +146,7 @@ def main():
                 with (folder / f"{table}.csv").open("w", newline="") as file:
                     csv.writer(file).writerows([(table, "seconds"), *((row[column], row[2]) for row in rows)])
             picture = ROOT / "docs" / "pictures" / "diagnosis_growth.png"
-            subprocess.run(["gnuplot", "-c", HERE / "growth.gp", folder, picture], check=True)
+            subprocess.run(["gnuplot", "-c", HERE / "growth.gp", folder, picture, str(GOAL_SECONDS)], check=True)
             (ROOT / "docs" / "diagnosis-growth.md").write_text(
                 "# How the time of a diagnosis grows\n\nPrinted by `bench/diagnosis/growth.py --write`, which says what is measured.\n\n"
                 "![Seconds over samples and over candidates](pictures/diagnosis_growth.png)\n\n" + text + "\n"

@@ -58,6 +58,24 @@ def scratch(purpose):
         subprocess.run(["rm", "-rf", "--one-file-system", folder])
 
 
+def put_sources(folder):
+    """The files of this tree, committed or not; what an earlier run built stays."""
+    folder.mkdir(exist_ok=True)
+    for old in folder.iterdir():
+        if old.name != "build":
+            shutil.rmtree(old) if old.is_dir() else old.unlink()
+    git = ["git", "-c", "safe.directory=*", "-C", SOURCE]
+    names = subprocess.run([*git, "ls-files", "-z", "--cached", "--others", "--exclude-standard"], capture_output=True, check=True)
+    there = [name for name in names.stdout.split(b"\0") if name and Path(SOURCE, name.decode()).exists()]
+    with subprocess.Popen(["tar", "-C", SOURCE, "--null", "-T", "-", "-cf", "-"], stdin=subprocess.PIPE,
+                          stdout=subprocess.PIPE) as packing:
+        with subprocess.Popen(["tar", "-xf", "-", "-C", folder], stdin=packing.stdout) as unpacking:
+            packing.stdin.write(b"\0".join(there))
+            packing.stdin.close()
+        if packing.wait() != 0 or unpacking.returncode != 0:
+            raise SystemExit(f"the sources could not be copied to {folder}")
+
+
 class Root:
     """A system in a folder. It is made where the folder has none, and must be of the version that is asked for."""
 

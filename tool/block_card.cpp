@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "codegen/graph/fmu_block.hpp"
 #include "codegen/graph/names.hpp"
 #include "support/utf8.hpp"
+#include "support/wrapped.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -23,48 +23,25 @@ namespace {
 constexpr std::size_t page_width = 100;
 /// Behind the columns of a pin; where there is less, its words stand below.
 constexpr std::size_t least_room = 24;
-constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
 
 std::string type_text(const Field& field) {
   return field.length > 1 ? fmt::format("ARRAY [0..{}] OF {}", field.length - 1, type_name(field.type))
                           : std::string(type_name(field.type));
 }
 
-/// Words in lines of a width, the first behind `head`, the others behind an indent.
-std::string filled(std::string_view head, std::string_view words, std::size_t indent, std::size_t width) {
-  std::string text(head);
-  std::size_t at = character_count(head);
-  for (bool is_first = true; !words.empty(); is_first = false) {
-    const auto end = std::min(words.find(' '), words.size());
-    const auto word = words.substr(0, end);
-    words.remove_prefix(std::min(end + 1, words.size()));
-    const auto length = character_count(word);
-    if (!is_first && at + 1 + length > width) {
-      text += "\n" + std::string(indent, ' ');
-      at = indent;
-    } else if (!is_first) {
-      text += ' ';
-      ++at;
-    }
-    text += word;
-    at += length;
-  }
-  return text + "\n";
-}
-
 /// A paragraph behind an indent; none without words.
 std::string paragraph(std::string_view words, std::size_t indent, std::size_t width) {
-  return words.empty() ? std::string() : filled(std::string(indent, ' '), words, indent, width);
+  return words.empty() ? std::string() : wrapped(std::string(indent, ' ') + std::string(words), width) + "\n";
 }
 
-/// The columns of a pin and what is said of it: beside them, or below where a terminal is too narrow.
-std::string pin_line(const std::string& columns, const std::string& words, std::size_t width) {
+/// The columns of a pin and what is said of it: beside them, or below where a terminal is too narrow; 0: it is none.
+std::string pin_line(const std::string& columns, const std::string& words, std::size_t terminal) {
   constexpr std::size_t below = 6;
   const std::size_t at = character_count(columns);
-  if (!words.empty() && at + least_room <= width) {
-    return filled(columns, words, at, width);
+  if (!words.empty() && (terminal == 0 || at + least_room <= terminal)) {
+    return columns + paragraph(words, at, terminal).substr(at);
   }
-  return columns.substr(0, columns.find_last_not_of(' ') + 1) + "\n" + paragraph(words, below, width);
+  return columns.substr(0, columns.find_last_not_of(' ') + 1) + "\n" + paragraph(words, below, terminal);
 }
 
 /// What is to be known of a field besides its meaning: range, default, neutral setting.
@@ -102,7 +79,7 @@ std::string padded(const std::string& text, std::size_t width) {
   return text + std::string(width - std::min(width, character_count(text)), ' ');
 }
 
-std::string section(std::string_view title, std::span<const Field> fields, bool are_outputs, std::size_t width) {
+std::string section(std::string_view title, std::span<const Field> fields, bool are_outputs, std::size_t terminal) {
   if (fields.empty()) {
     return {};
   }
@@ -117,7 +94,7 @@ std::string section(std::string_view title, std::span<const Field> fields, bool 
     text += pin_line(
         fmt::format("  {}  {}  {}  ", padded(name_text(field), names), padded(type_text(field), types),
                     padded(unit_text(field), units)),
-        fmt::format("{}{}", field.meaning, limits.empty() || field.meaning.empty() ? limits : "; " + limits), width);
+        fmt::format("{}{}", field.meaning, limits.empty() || field.meaning.empty() ? limits : "; " + limits), terminal);
   }
   return text;
 }
@@ -205,15 +182,14 @@ std::vector<std::string_view> feedthrough_inputs(const BlockType& block, std::si
 }
 
 std::string card_text(const BlockType& block, std::size_t terminal) {
-  const std::size_t columns = terminal == 0 ? unlimited : terminal;
-  const std::size_t width = std::min(page_width, columns);
+  const std::size_t width = terminal == 0 ? page_width : std::min(page_width, terminal);
   const About& about = block.about;
   std::string text = fmt::format("{}: {} ({})\n\n", about.name, about.title, group_name(about.group));
   text +=
       paragraph(about.equation, 2, width) + (about.equation.empty() ? "" : "\n") + paragraph(about.meaning, 0, width);
-  text += section("inputs", block.inputs, false, columns);
-  text += section("parameters", block.params, false, columns);
-  text += section("outputs", block.outputs, true, columns);
+  text += section("inputs", block.inputs, false, terminal);
+  text += section("parameters", block.params, false, terminal);
+  text += section("outputs", block.outputs, true, terminal);
   text += "\nfeedthrough: inputs that an output depends on within the same step\n";
   for (std::size_t i = 0; i < block.outputs.size(); ++i) {
     text += "  " + feedthrough_line(block, i) + "\n";

@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 
+#include "codegen/graph/components.hpp"
 #include "codegen/graph/loop_cutter.hpp"
 #include "codegen/graph/outermost.hpp"
 #include "support/errors.hpp"
@@ -172,62 +173,20 @@ class Scheduler {
     return list;
   }
 
-  // --- loops: strongly connected tasks (Tarjan), without recursion ---
+  // --- loops: tasks that need each other, or themselves ---
 
   void find_loops() {
     loops_.clear();
-    struct Visit {
-      std::uint32_t task;
-      std::uint32_t next;
-      std::vector<std::uint32_t> depends;
-    };
-    std::vector<std::uint32_t> number(tasks_.size(), none);
-    std::vector<std::uint32_t> lowest(tasks_.size(), 0);
-    std::vector<bool> open(tasks_.size(), false);
-    std::vector<std::uint32_t> component;
-    std::vector<Visit> stack;
-    std::uint32_t counter = 0;
-    const auto enter = [&](std::uint32_t task) {
-      number[task] = lowest[task] = counter++;
-      open[task] = true;
-      component.push_back(task);
-      stack.push_back({task, 0, dependences(task)});
-    };
-    for (std::uint32_t root = 0; root < tasks_.size(); ++root) {
-      if (number[root] == none) {
-        enter(root);
-      }
-      while (!stack.empty()) {
-        Visit& visit = stack.back();
-        const std::uint32_t task = visit.task;
-        if (visit.next < visit.depends.size()) {
-          const std::uint32_t other = visit.depends[visit.next++];
-          if (number[other] == none) {
-            enter(other);
-          } else if (open[other]) {
-            lowest[task] = std::min(lowest[task], number[other]);
-          }
-          continue;
-        }
-        const bool to_itself = std::ranges::find(visit.depends, task) != visit.depends.end();
-        stack.pop_back();
-        if (!stack.empty()) {
-          lowest[stack.back().task] = std::min(lowest[stack.back().task], lowest[task]);
-        }
-        if (lowest[task] == number[task]) {
-          std::vector<std::uint32_t> loop;
-          std::uint32_t last = none;
-          while (last != task) {
-            last = component.back();
-            component.pop_back();
-            open[last] = false;
-            loop.push_back(last);
-          }
-          if (loop.size() > 1 || to_itself) {
-            std::ranges::sort(loop);
-            loops_.push_back(std::move(loop));
-          }
-        }
+    std::vector<bool> to_itself(tasks_.size(), false);
+    auto components = components_of(static_cast<std::uint32_t>(tasks_.size()), [&](std::uint32_t task) {
+      std::vector<std::uint32_t> needed = dependences(task);
+      to_itself[task] = std::ranges::find(needed, task) != needed.end();
+      return needed;
+    });
+    for (std::vector<std::uint32_t>& loop : components) {
+      if (loop.size() > 1 || to_itself[loop.front()]) {
+        std::ranges::sort(loop);
+        loops_.push_back(std::move(loop));
       }
     }
   }

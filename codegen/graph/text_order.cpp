@@ -4,16 +4,17 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <queue>
 #include <set>
 #include <unordered_map>
+#include <utility>
 
 #include "blocks/delay.hpp"
 #include "blocks/delay_bool.hpp"
 #include "blocks/delay_dint.hpp"
 #include "blocks/delay_word.hpp"
+#include "codegen/graph/components.hpp"
 #include "codegen/graph/loop_cutter.hpp"
 #include "codegen/graph/names.hpp"
 #include "codegen/graph/schedule.hpp"
@@ -71,8 +72,14 @@ class Order {
   }
 
   void check(bool has_loops, Diagnostics& diagnostics) const {
-    const std::vector<std::uint32_t> loop = circles(false);
-    const std::vector<std::uint32_t> circle = circles(true);
+    const std::vector<std::uint32_t> loop = has_loops ? circles(false) : std::vector<std::uint32_t>();
+    std::optional<std::vector<std::uint32_t>> circle;  // looked for where something is told
+    const auto in_circle = [&](std::uint32_t one, std::uint32_t other) {
+      if (!circle) {
+        circle = circles(true);
+      }
+      return (*circle)[one] == (*circle)[other];
+    };
     std::set<std::pair<std::uint32_t, std::string>> told;  // X := X + (U - X) reads X twice, and is told once
     for (const Read& read : reads_) {
       const std::uint32_t writer = *writer_[read.variable];
@@ -83,8 +90,7 @@ class Order {
       }
       if (told.emplace(read.statement, upper(read.text)).second) {
         if (read.side == Side::Behind) {
-          report_hidden_delay(read, writer, is_remembered(read) && circle[read.statement] == circle[writer],
-                              diagnostics);
+          report_hidden_delay(read, writer, is_remembered(read) && in_circle(read.statement, writer), diagnostics);
         } else {
           report_other_meaning(read, writer, diagnostics);
         }
@@ -178,7 +184,7 @@ class Order {
   }
 
   /// By statement, a number that those have in common which need each other within a step, or, `with_memory`, from one
-  /// step to the next by a variable. Tarjan's strongly connected components, without recursion.
+  /// step to the next by a variable.
   [[nodiscard]] std::vector<std::uint32_t> circles(bool with_memory) const {
     const auto count = static_cast<std::uint32_t>(definition_.block->statements.size());
     std::vector<std::vector<std::uint32_t>> needs(count);
@@ -187,46 +193,11 @@ class Order {
         needs[read.statement].push_back(*writer_[read.variable]);
       }
     }
-    struct Visit {
-      std::uint32_t statement;
-      std::size_t next;
-    };
-    constexpr auto none = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> circle(count, none);
-    std::vector<std::uint32_t> number(count, none);
-    std::vector<std::uint32_t> lowest(count, 0);
-    std::vector<std::uint32_t> component;
-    std::uint32_t counter = 0;
-    for (std::uint32_t root = 0; root < count; ++root) {
-      std::vector<Visit> stack;
-      const auto enter = [&](std::uint32_t statement) {
-        number[statement] = lowest[statement] = counter++;
-        component.push_back(statement);
-        stack.push_back({statement, 0});
-      };
-      if (number[root] == none) {
-        enter(root);
-      }
-      while (!stack.empty()) {
-        const std::uint32_t statement = stack.back().statement;
-        if (stack.back().next < needs[statement].size()) {
-          const std::uint32_t other = needs[statement][stack.back().next++];
-          if (number[other] == none) {
-            enter(other);
-          } else if (circle[other] == none) {
-            lowest[statement] = std::min(lowest[statement], number[other]);
-          }
-          continue;
-        }
-        stack.pop_back();
-        if (!stack.empty()) {
-          std::uint32_t& outer = lowest[stack.back().statement];
-          outer = std::min(outer, lowest[statement]);
-        }
-        while (lowest[statement] == number[statement] && circle[statement] == none) {
-          circle[component.back()] = statement;
-          component.pop_back();
-        }
+    std::vector<std::uint32_t> circle(count);
+    const auto components = components_of(count, [&](std::uint32_t statement) { return std::move(needs[statement]); });
+    for (std::uint32_t number = 0; number < components.size(); ++number) {
+      for (const std::uint32_t statement : components[number]) {
+        circle[statement] = number;
       }
     }
     return circle;

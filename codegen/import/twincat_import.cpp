@@ -3,21 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <pugixml.hpp>
 #include <set>
 #include <vector>
 
+#include "codegen/language/lexer.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 
 namespace hysteron {
 namespace {
-
-bool is_name_letter(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-}
 
 /// A word of a text outside of comments, pragmas and strings.
 struct TextWord {
@@ -26,24 +21,14 @@ struct TextWord {
 };
 
 std::vector<TextWord> words_of_text(std::string_view text) {
-  // What is left out, from its beginning to its end.
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> gaps{
-      {{"(*", "*)"}, {"//", "\n"}, {"/*", "*/"}, {"{", "}"}, {"'", "'"}, {"\"", "\""}}};
+  using language::Symbol;
+  language::Lexer lexer(text, language::Comments::Annotated, nullptr);
+  lexer.take_foreign();
   std::vector<TextWord> words;
-  for (std::size_t at = 0; at < text.size();) {
-    const auto gap =
-        std::ranges::find_if(gaps, [&](const auto& one) { return text.substr(at).starts_with(one.first); });
-    if (gap != gaps.end()) {
-      const std::size_t end = text.find(gap->second, at + gap->first.size());
-      at = end == std::string_view::npos ? text.size() : end + gap->second.size();
-    } else if (is_name_letter(text[at])) {
-      const std::size_t begin = at;
-      while (at < text.size() && is_name_letter(text[at])) {
-        ++at;
-      }
-      words.push_back({text.substr(begin, at - begin), at});
-    } else {
-      ++at;
+  for (language::Token one = lexer.next(); one.symbol != Symbol::End; one = lexer.next()) {
+    if (one.symbol == Symbol::Identifier || one.symbol == Symbol::Keyword || one.symbol == Symbol::Typed) {
+      const std::string_view word = text.substr(one.offset, one.length);
+      words.push_back({word.substr(0, word.find('#')), one.end()});  // STATE#IDLE names STATE
     }
   }
   return words;

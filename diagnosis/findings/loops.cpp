@@ -4,37 +4,10 @@
 #include <cstdint>
 
 #include "blocks/families.hpp"
+#include "diagnosis/effects/motions.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
-
-/// What leads to some wires: nodes and inputs, by their places in the graph.
-struct Behind {
-  std::vector<bool> nodes{};
-  std::vector<bool> inputs{};
-
-  explicit Behind(const Graph& graph) : nodes(graph.nodes.size()), inputs(graph.inputs.size()) {}
-
-  void add(const Graph& graph, const Wire& first) {
-    std::vector<Wire> open{first};
-    while (!open.empty()) {
-      const Wire wire = open.back();
-      open.pop_back();
-      if (wire.from == Wire::From::Input) {
-        inputs[wire.index] = true;
-      } else if (wire.from == Wire::From::Node && !nodes[wire.index]) {
-        nodes[wire.index] = true;
-        add_pins(graph, graph.nodes[wire.index], open);
-      }
-    }
-  }
-
-  static void add_pins(const Graph& graph, const Node& node, std::vector<Wire>& open) {
-    for (std::uint32_t pin = 0; pin < node.wire_count; ++pin) {
-      open.push_back(graph.wire(node, pin));
-    }
-  }
-};
 
 bool is_loop(Family family) {
   return family == Family::Hysteresis || family == Family::Play;
@@ -51,22 +24,46 @@ bool is_loop(const Node& node) {
           std::ranges::any_of(node.block->params, tells));
 }
 
-std::vector<std::string> names_of(const Graph& graph, const std::vector<bool>& inputs) {
+/// Whether a wire comes from a node that lies behind what the steps were counted from.
+bool is_behind(const Wire& wire, const std::vector<std::size_t>& steps) {
+  return wire.from == Wire::From::Node && steps[wire.index] != unconnected;
+}
+
+std::vector<std::uint32_t> readers_of_input(const Graph& graph, std::uint32_t input) {
+  std::vector<std::uint32_t> readers;
+  for (std::uint32_t n = 0; n < graph.nodes.size(); ++n) {
+    for (std::uint32_t pin = 0; pin < graph.nodes[n].wire_count; ++pin) {
+      const Wire& wire = graph.wire(graph.nodes[n], pin);
+      if (wire.from == Wire::From::Input && wire.index == input) {
+        readers.push_back(n);
+        break;
+      }
+    }
+  }
+  return readers;
+}
+
+/// The inputs that lead to an output; `through_loop`: on a way with a hysteresis or a play.
+std::vector<std::string> leading_inputs(const Graph& graph, std::string_view output, bool through_loop) {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (inputs[i]) {
+  const Port* const port = find_port(graph.outputs, output);
+  for (std::uint32_t i = 0; port != nullptr && i < graph.inputs.size(); ++i) {
+    const bool is_itself = port->wire.from == Wire::From::Input && port->wire.index == i;
+    std::vector<std::size_t> steps = steps_behind(graph, readers_of_input(graph, i));
+    if (through_loop) {
+      std::vector<std::uint32_t> loops;
+      for (std::uint32_t n = 0; n < graph.nodes.size(); ++n) {
+        if (steps[n] != unconnected && is_loop(graph.nodes[n])) {
+          loops.push_back(n);
+        }
+      }
+      steps = steps_behind(graph, loops);
+    }
+    if (is_behind(port->wire, steps) || (is_itself && !through_loop)) {
       names.push_back(graph.inputs[i].name);
     }
   }
   return names;
-}
-
-Behind behind_output(const Graph& graph, std::string_view output) {
-  Behind behind(graph);
-  if (const Port* const port = find_port(graph.outputs, output)) {
-    behind.add(graph, port->wire);
-  }
-  return behind;
 }
 
 bool moves(const records::Column& column) {
@@ -77,18 +74,11 @@ bool moves(const records::Column& column) {
 }  // namespace
 
 std::vector<std::string> inputs_of(const Graph& graph, std::string_view output) {
-  return names_of(graph, behind_output(graph, output).inputs);
+  return leading_inputs(graph, output, false);
 }
 
 std::vector<std::string> inputs_of_loop(const Graph& graph, std::string_view output) {
-  const Behind behind = behind_output(graph, output);
-  Behind loops(graph);
-  for (std::size_t n = 0; n < graph.nodes.size(); ++n) {
-    if (behind.nodes[n] && is_loop(graph.nodes[n])) {
-      loops.add(graph, {.from = Wire::From::Node, .index = static_cast<std::uint32_t>(n)});
-    }
-  }
-  return names_of(graph, loops.inputs);
+  return leading_inputs(graph, output, true);
 }
 
 void draw_over_inputs(const Task& task, const Graph& graph, const Evidence& evidence, std::vector<Trace>& traces) {

@@ -15,7 +15,13 @@ namespace {
 
 using report::escaped;
 
-/// Places for what the script draws.
+/// A place for what the script draws once it is open; the first of a section is.
+std::string folded(bool is_open, const std::string& summary, const std::string& id) {
+  return fmt::format(
+      "<details class=\"trace\"{}><summary>{}</summary>\n<div class=\"plot\" id=\"{}\"></div></details>\n",
+      is_open ? " open" : "", escaped(summary), id);
+}
+
 std::string traces_section(const Diagnosis& diagnosis) {
   if (diagnosis.traces.empty()) {
     return {};
@@ -23,9 +29,8 @@ std::string traces_section(const Diagnosis& diagnosis) {
   std::string html = "<section class=\"traces\"><h2>Residual over time</h2>\n";
   for (std::size_t i = 0; i < diagnosis.traces.size(); ++i) {
     const Trace& trace = diagnosis.traces[i];
-    html += fmt::format(
-        "<details class=\"trace\"{}><summary>{}: {}</summary>\n<div class=\"plot\" id=\"trace-{}\"></div></details>\n",
-        i == 0 ? " open" : "", escaped(trace.record), escaped(report::with_unit(trace.signal, trace.unit)), i);
+    html += folded(i == 0, fmt::format("{}: {}", trace.record, report::with_unit(trace.signal, trace.unit)),
+                   fmt::format("trace-{}", i));
   }
   return html + "</section>\n";
 }
@@ -36,11 +41,10 @@ std::string loops_section(const Diagnosis& diagnosis) {
   for (std::size_t i = 0; i < diagnosis.traces.size(); ++i) {
     const Trace& trace = diagnosis.traces[i];
     if (!trace.over.name.empty()) {
-      html += fmt::format(
-          "<details class=\"trace\"{}><summary>{}: {} over {}</summary>\n<div class=\"plot\" "
-          "id=\"loop-{}\"></div></details>\n",
-          html.empty() ? " open" : "", escaped(trace.record), escaped(report::with_unit(trace.signal, trace.unit)),
-          escaped(report::with_unit(trace.over.name, trace.over.unit)), i);
+      html += folded(html.empty(),
+                     fmt::format("{}: {} over {}", trace.record, report::with_unit(trace.signal, trace.unit),
+                                 report::with_unit(trace.over.name, trace.over.unit)),
+                     fmt::format("loop-{}", i));
     }
   }
   return html.empty() ? html : "<section class=\"loops\"><h2>Output over input</h2>\n" + html + "</section>\n";

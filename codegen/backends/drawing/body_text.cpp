@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "codegen/backends/drawing/dot_text.hpp"
+#include "support/utf8.hpp"
 
 namespace hysteron::dot {
 namespace {
@@ -33,11 +34,6 @@ std::vector<std::string> lines_of_body(std::string_view text) {
   return lines;
 }
 
-std::size_t characters_of_line(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
 /// Blanks at the beginning are kept, which a label would drop.
 std::string body_line(std::string_view line) {
   const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
@@ -46,8 +42,8 @@ std::string body_line(std::string_view line) {
     text += "&#160;";
   }
   std::string_view rest = line.substr(indent);
-  const bool cut = characters_of_line(line) > longest_body_line;
-  while (characters_of_line(rest) + indent > longest_body_line && !rest.empty()) {
+  const bool cut = character_count(line) > longest_body_line;
+  while (character_count(rest) + indent > longest_body_line && !rest.empty()) {
     while ((static_cast<unsigned char>(rest.back()) & 0xC0U) == 0x80U) {
       rest.remove_suffix(1);  // not within a character
     }

@@ -55,6 +55,12 @@ std::vector<std::int64_t> grid(std::int64_t last) {
   return list;
 }
 
+/// Whether the last message that came, if one has come yet, has a word.
+bool last_says(const Subscriber& subscriber, std::string_view word) {
+  const auto heard = subscriber.heard();
+  return !heard.empty() && heard.back().payload.find(word) != std::string::npos;
+}
+
 TEST_F(Publishing, GivesEachRowWithItsTime) {
   Broker broker;
   ASSERT_TRUE(broker.start());
@@ -72,10 +78,7 @@ TEST_F(Publishing, GivesEachRowWithItsTime) {
     bench.finish();
     EXPECT_FALSE(bench.count().is_connected);
     EXPECT_EQ(bench.said(), "");
-    ASSERT_TRUE(soon([&] {
-      const auto heard = subscriber.heard();
-      return !heard.empty() && heard.back().payload.find("false") != std::string::npos;
-    }));
+    ASSERT_TRUE(soon([&] { return last_says(subscriber, "false"); }));
     auto rows = subscriber.on("plant/data");
     rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(before));
     EXPECT_EQ(numbers_in(rows), grid(1000));
@@ -385,10 +388,7 @@ TEST_F(Publishing, ChangesAloneWhereTheyAreAskedFor) {
   bench.run(999);
   ASSERT_TRUE(bench.until_confirmed());
   bench.finish();
-  ASSERT_TRUE(soon([&] {
-    const auto heard = subscriber.heard();
-    return !heard.empty() && heard.back().payload.find("false") != std::string::npos;
-  }));
+  ASSERT_TRUE(soon([&] { return last_says(subscriber, "false"); }));
   const auto rows = subscriber.on("plant/data");
   EXPECT_EQ(json::parse(rows[0]).at("values").size(), 2U) << "the first is whole";
   const auto numbers = numbers_in(rows);
@@ -420,10 +420,7 @@ TEST_F(Publishing, AfterALossTheNextRowOfChangesIsWhole) {
   bench.run(20);
   ASSERT_TRUE(bench.until_confirmed());
   bench.finish();
-  ASSERT_TRUE(soon([&] {
-    const auto heard = subscriber.heard();
-    return !heard.empty() && heard.back().payload.find("false") != std::string::npos;
-  }));
+  ASSERT_TRUE(soon([&] { return last_says(subscriber, "false"); }));
   const auto rows = subscriber.on("plant/data");
   ASSERT_GT(rows.size(), 3U);
   for (std::size_t i = 0; i < rows.size(); ++i) {

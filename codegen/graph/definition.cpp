@@ -73,7 +73,7 @@ class Reader {
         error(error::duplicate_name, block.name.span, fmt::format("'{}' is a block of the library", block.name.text),
               "Choose another name; names that begin with HY_ belong to the library.");
       }
-      if (!definitions_.by_name.emplace(upper(block.name.text), index).second) {
+      if (!definitions_.by_name.add(block.name.text, index)) {
         error(error::duplicate_name, block.name.span, fmt::format("the block '{}' is defined twice", block.name.text),
               "Rename one of the two.");
       }
@@ -120,7 +120,7 @@ class Reader {
       error(error::reserved_name, variable.name.span, fmt::format("'{}' is a block of the library", name),
             "Choose another name; names that begin with HY_ belong to the library.");
     }
-    if (!definition.by_name.emplace(upper(name), static_cast<std::uint32_t>(definition.variables.size())).second) {
+    if (!definition.by_name.add(name, static_cast<std::uint32_t>(definition.variables.size()))) {
       error(error::duplicate_name, variable.name.span, fmt::format("'{}' is declared twice", name),
             "Rename one of the two; upper and lower case do not differ.");
     }
@@ -187,9 +187,8 @@ class Reader {
         continue;
       }
       for (const Variable& variable : definition.block->variables) {
-        const auto found = definitions_.by_name.find(upper(variable.type.text));
-        if (found != definitions_.by_name.end()) {
-          definition.in_place.push_back(found->second);
+        if (const std::uint32_t* const found = definitions_.by_name.find(variable.type.text)) {
+          definition.in_place.push_back(*found);
         }
       }
     }
@@ -258,10 +257,9 @@ class Reader {
       declared.kind = Declared::Kind::Unknown;  // its sizes do not agree, which has been told
     } else if (language::same_name(variable.type.text, fmu_type_name)) {
       declare_fmu(variable, declared);
-    } else if (const auto found = definitions_.by_name.find(upper(variable.type.text));
-               found != definitions_.by_name.end()) {
+    } else if (const std::uint32_t* const found = definitions_.by_name.find(variable.type.text)) {
       declared.kind = Declared::Kind::UserBlock;
-      declared.definition = found->second;
+      declared.definition = *found;
     } else {
       unknown_type(variable);
       declared.kind = Declared::Kind::Unknown;  // one fault, one message: whatever names it is passed over

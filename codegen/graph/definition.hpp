@@ -5,11 +5,11 @@
 #include <deque>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "codegen/graph/graph.hpp"
 #include "codegen/language/syntax.hpp"
+#include "support/name_index.hpp"
 
 namespace hysteron {
 
@@ -28,7 +28,7 @@ struct Declared {
 struct Definition {
   const language::FunctionBlock* block = nullptr;
   std::vector<Declared> variables{};
-  std::unordered_map<std::string, std::uint32_t> by_name{};  ///< upper-case name → variable
+  NameIndex by_name{};  ///< variables
   std::int64_t sample_time_ns = 0;
   language::Span sample_time_span{};      ///< where @ts states it; the name where nothing does
   std::string effect{};                   ///< (* @effect creep *): joins the candidates of a diagnosis
@@ -42,7 +42,7 @@ struct Definitions {
   std::shared_ptr<const language::SourceFile> source{};
   std::vector<Definition> list{};              ///< in the order of the text
   std::vector<std::uint32_t> callees_first{};  ///< every definition after those that it instantiates
-  std::unordered_map<std::string, std::uint32_t> by_name{};
+  NameIndex by_name{};
   std::deque<std::string> names{};  ///< that the text does not have: of what a VAR_IN_OUT becomes
 };
 

@@ -75,11 +75,11 @@ void Elaborator::declare_top(const Instance& instance, std::size_t variable) {
 }
 
 void Elaborator::declare_noise(const Instance& instance, const NoisyOutput& noisy) {
-  const auto found = instance.definition->by_name.find(upper(noisy.output));
-  if (found == instance.definition->by_name.end()) {
+  const std::uint32_t* const found = instance.definition->by_name.find(noisy.output);
+  if (found == nullptr) {
     return;
   }
-  const Declared& declared = instance.definition->variables[found->second];
+  const Declared& declared = instance.definition->variables[*found];
   if (declared.kind != Declared::Kind::Output || declared.field.type != Type::Real) {
     return;
   }
@@ -88,7 +88,7 @@ void Elaborator::declare_noise(const Instance& instance, const NoisyOutput& nois
   port.preset = 0.0;
   graph_.inputs.push_back(std::move(port));
   const Wire noise{Wire::From::Input, Type::Real, 0, static_cast<std::uint32_t>(graph_.inputs.size() - 1)};
-  const std::uint32_t slot = instance.first_slot + found->second;
+  const std::uint32_t slot = instance.first_slot + *found;
   noisy_[slot] =
       builder_.operation(Op::Add, {alias(slot, Type::Real), noise}, upper(noisy.input), declared.variable->name.span);
 }
@@ -217,13 +217,13 @@ void Elaborator::instantiate(const Instance& instance, std::size_t variable, Par
 
 void Elaborator::elaborate_call(const Instance& instance, std::vector<Part>& parts, const language::Call& call) {
   const Definition& definition = *instance.definition;
-  const auto found = definition.by_name.find(upper(call.instance.text));
-  if (found == definition.by_name.end()) {
+  const std::uint32_t* const found = definition.by_name.find(call.instance.text);
+  if (found == nullptr) {
     unknown_name(definition, call.instance);
     return;
   }
-  const Declared& declared = definition.variables[found->second];
-  Part& part = parts[found->second];
+  const Declared& declared = definition.variables[*found];
+  Part& part = parts[*found];
   if (declared.kind == Declared::Kind::Unknown) {
     return;
   }
@@ -280,12 +280,12 @@ void Elaborator::elaborate_call(const Instance& instance, std::vector<Part>& par
 void Elaborator::elaborate_assignment(const Instance& instance, std::vector<Part>& parts,
                                       const language::Assignment& assignment) {
   const Definition& definition = *instance.definition;
-  const auto found = definition.by_name.find(upper(assignment.target.text));
-  if (found == definition.by_name.end()) {
+  const std::uint32_t* const found = definition.by_name.find(assignment.target.text);
+  if (found == nullptr) {
     unknown_name(definition, assignment.target);
     return;
   }
-  const Declared& declared = definition.variables[found->second];
+  const Declared& declared = definition.variables[*found];
   if (declared.kind == Declared::Kind::Unknown) {
     return;
   }
@@ -298,7 +298,7 @@ void Elaborator::elaborate_assignment(const Instance& instance, std::vector<Part
     return;
   }
   const Wire wire = lower(instance, parts, assignment.value, instance.path + std::string(declared.field.name));
-  Slot& target = slots_[instance.first_slot + found->second];
+  Slot& target = slots_[instance.first_slot + *found];
   if (target.driven) {
     error(error::double_drive, assignment.target.span, fmt::format("'{}' is assigned twice", assignment.target.text),
           "Keep one of the two; to switch between signals use SEL or HY_SWITCH.",
@@ -336,12 +336,12 @@ Wire Elaborator::lower(const Instance& instance, const std::vector<Part>& parts,
 Wire Elaborator::resolve(const Instance& instance, const std::vector<Part>& parts,
                          const language::Reference& reference) {
   const Definition& definition = *instance.definition;
-  const auto found = definition.by_name.find(upper(reference.name.text));
-  if (found == definition.by_name.end()) {
+  const std::uint32_t* const found = definition.by_name.find(reference.name.text);
+  if (found == nullptr) {
     unknown_name(definition, reference.name);
     return {};
   }
-  const Declared& declared = definition.variables[found->second];
+  const Declared& declared = definition.variables[*found];
   if (declared.kind == Declared::Kind::Unknown) {
     return {};
   }
@@ -356,8 +356,8 @@ Wire Elaborator::resolve(const Instance& instance, const std::vector<Part>& part
     if (remembered_ != nullptr && remembered_->contains(&reference)) {
       return builder_.literal(declared.field.type, 0.0);
     }
-    const auto noisy = noisy_.find(instance.first_slot + found->second);
-    return noisy != noisy_.end() ? noisy->second : alias(instance.first_slot + found->second, declared.field.type);
+    const auto noisy = noisy_.find(instance.first_slot + *found);
+    return noisy != noisy_.end() ? noisy->second : alias(instance.first_slot + *found, declared.field.type);
   }
   if (!is_instance) {
     error(error::unknown_pin, reference.pin.span,
@@ -368,7 +368,7 @@ Wire Elaborator::resolve(const Instance& instance, const std::vector<Part>& part
               : "Leave the dot and what follows away.");
     return {};
   }
-  const Part& part = parts[found->second];
+  const Part& part = parts[*found];
   if (declared.kind == Declared::Kind::LibraryBlock) {
     for (std::size_t i = 0; i < declared.block->outputs.size(); ++i) {
       if (language::same_name(declared.block->outputs[i].name, reference.pin.text)) {
@@ -377,9 +377,9 @@ Wire Elaborator::resolve(const Instance& instance, const std::vector<Part>& part
     }
   } else {
     const Definition& inner = definitions_.list[declared.definition];
-    const auto output = inner.by_name.find(upper(reference.pin.text));
-    if (output != inner.by_name.end() && inner.variables[output->second].kind == Declared::Kind::Output) {
-      return alias(part.first_slot + output->second, inner.variables[output->second].field.type);
+    const std::uint32_t* const output = inner.by_name.find(reference.pin.text);
+    if (output != nullptr && inner.variables[*output].kind == Declared::Kind::Output) {
+      return alias(part.first_slot + *output, inner.variables[*output].field.type);
     }
   }
   error(error::unknown_pin, reference.pin.span,

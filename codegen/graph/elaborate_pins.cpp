@@ -83,11 +83,10 @@ Pin Elaborator::find_pin(const Declared& declared, const language::Name& name) {
     }
   } else {
     const Definition& inner = definitions_.list[declared.definition];
-    const auto found = inner.by_name.find(upper(name.text));
-    if (found != inner.by_name.end()) {
-      const Declared& variable = inner.variables[found->second];
+    if (const std::uint32_t* const found = inner.by_name.find(name.text)) {
+      const Declared& variable = inner.variables[*found];
       if (variable.kind == Declared::Kind::Input || variable.kind == Declared::Kind::Parameter) {
-        return {true, variable.kind == Declared::Kind::Parameter, found->second, variable.field};
+        return {true, variable.kind == Declared::Kind::Parameter, *found, variable.field};
       }
     }
   }
@@ -184,13 +183,9 @@ void Elaborator::set_constant(const Instance& instance, const Declared& declared
   if (pin.parameter) {
     std::vector<double> all = values;
     all.resize(pin.field.length, 0.0);
-    given_.emplace(upper(instance.path + std::string(declared.field.name)) + "." + upper(pin.field.name),
-                   values.size());
-    open_parameters_.push_back(
-        {.path = upper(instance.path + std::string(declared.field.name)) + "." + upper(pin.field.name),
-         .field = pin.field,
-         .value = std::move(all),
-         .span = span});
+    std::string path = upper(instance.path + std::string(declared.field.name)) + "." + upper(pin.field.name);
+    given_.emplace(path, values.size());
+    open_parameters_.push_back({.path = std::move(path), .field = pin.field, .value = std::move(all), .span = span});
     wire = {Wire::From::Parameter, pin.field.type, 0, static_cast<std::uint32_t>(open_parameters_.size() - 1)};
   } else {
     wire = builder_.literal(pin.field.type, values.front());

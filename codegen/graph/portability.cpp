@@ -313,8 +313,8 @@ class Check {
   }
 
   [[nodiscard]] const Declared* find(std::string_view name) const {
-    const auto found = definition_.by_name.find(language::upper(name));
-    return found == definition_.by_name.end() ? nullptr : &definition_.variables[found->second];
+    const std::uint32_t* const found = definition_.by_name.find(name);
+    return found == nullptr ? nullptr : &definition_.variables[*found];
   }
 
   [[nodiscard]] Type type_of(const Declared* declared, std::string_view pin) const {
@@ -329,8 +329,8 @@ class Check {
     }
     if (declared->kind == Declared::Kind::UserBlock) {
       const Definition& inner = definitions_.list[declared->definition];
-      const auto found = inner.by_name.find(language::upper(pin));
-      return found == inner.by_name.end() ? Type::Real : inner.variables[found->second].field.type;
+      const std::uint32_t* const found = inner.by_name.find(pin);
+      return found == nullptr ? Type::Real : inner.variables[*found].field.type;
     }
     return declared->field.type;
   }

@@ -7,7 +7,6 @@
 #include <optional>
 #include <queue>
 #include <set>
-#include <unordered_map>
 #include <utility>
 
 #include "blocks/delay.hpp"
@@ -48,7 +47,7 @@ class Order {
       : definitions_(definitions), source_(*definitions.source), definition_(definitions.list[index]), graph_(graph) {
     for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
       if (graph.nodes[i].block != nullptr) {
-        nodes_.emplace(upper(graph.nodes[i].path), i);
+        nodes_.add(graph.nodes[i].path, i);
       }
     }
     const auto& statements = definition_.block->statements;
@@ -56,8 +55,8 @@ class Order {
     for (std::uint32_t s = 0; s < statements.size(); ++s) {
       const auto* call = std::get_if<language::Call>(&statements[s]);
       const auto& name = call != nullptr ? call->instance : std::get<language::Assignment>(statements[s]).target;
-      if (const auto found = definition_.by_name.find(upper(name.text)); found != definition_.by_name.end()) {
-        writer_[found->second] = s;
+      if (const std::uint32_t* const found = definition_.by_name.find(name.text)) {
+        writer_[*found] = s;
       }
     }
     for (std::uint32_t s = 0; s < statements.size(); ++s) {
@@ -206,7 +205,7 @@ class Order {
   /// A name for a delay that the block does not declare yet: LAST_BEFORE.
   [[nodiscard]] std::string delay_name(std::string_view variable) const {
     std::string name = fmt::format("{}_BEFORE", variable);
-    for (int i = 2; definition_.by_name.contains(upper(name)); ++i) {
+    for (int i = 2; definition_.by_name.contains(name); ++i) {
       name = fmt::format("{}_BEFORE_{}", variable, i);
     }
     return name;
@@ -264,8 +263,8 @@ class Order {
       }
     } else if (declared.kind == Declared::Kind::UserBlock) {
       const Definition& inner = definitions_.list[declared.definition];
-      if (const auto output = inner.by_name.find(upper(pin)); output != inner.by_name.end()) {
-        return inner.variables[output->second].field.type;
+      if (const std::uint32_t* const output = inner.by_name.find(pin)) {
+        return inner.variables[*output].field.type;
       }
     }
     return declared.field.type;
@@ -292,33 +291,33 @@ class Order {
   }
 
   void add(const language::Reference& reference, language::Span span, std::uint32_t statement) {
-    const auto found = definition_.by_name.find(upper(reference.name.text));
-    if (found == definition_.by_name.end() || !writer_[found->second]) {
+    const std::uint32_t* const found = definition_.by_name.find(reference.name.text);
+    if (found == nullptr || !writer_[*found]) {
       return;
     }
-    const Declared& declared = definition_.variables[found->second];
+    const Declared& declared = definition_.variables[*found];
     Read read{.statement = statement,
-              .variable = found->second,
+              .variable = *found,
               .reference = &reference,
               .span = span,
               .text = std::string(source_.text_of(span))};
     if (declared.kind == Declared::Kind::LibraryBlock) {
-      const auto node = nodes_.find(upper(declared.field.name));
-      if (node == nodes_.end()) {
+      const std::uint32_t* const node = nodes_.find(declared.field.name);
+      if (node == nullptr) {
         return;
       }
       for (std::size_t port = 0; port < declared.block->outputs.size(); ++port) {
         if (language::same_name(declared.block->outputs[port].name, reference.pin.text)) {
-          if (!declared.block->states.empty() && !has_feedthrough(graph_, graph_.nodes[node->second], port)) {
+          if (!declared.block->states.empty() && !has_feedthrough(graph_, graph_.nodes[*node], port)) {
             read.side = has_memory(declared.block->trace, port) ? Side::RatherBefore : Side::RatherBehind;
           }
         }
       }
     } else if (declared.kind == Declared::Kind::UserBlock) {
       const Definition& inner = definitions_.list[declared.definition];
-      const auto output = inner.by_name.find(upper(reference.pin.text));
-      if (output != inner.by_name.end() && output->second < inner.late.size()) {
-        read.side = inner.late[output->second] ? Side::Behind : Side::RatherBehind;
+      const std::uint32_t* const output = inner.by_name.find(reference.pin.text);
+      if (output != nullptr && *output < inner.late.size()) {
+        read.side = inner.late[*output] ? Side::Behind : Side::RatherBehind;
       }
     }
     reads_.push_back(std::move(read));
@@ -328,7 +327,7 @@ class Order {
   const language::SourceFile& source_;
   const Definition& definition_;
   const Graph& graph_;
-  std::unordered_map<std::string, std::uint32_t> nodes_;
+  NameIndex nodes_;                                   ///< of library blocks, by path
   std::vector<std::optional<std::uint32_t>> writer_;  ///< by variable: the statement that calls or assigns it
   std::vector<Read> reads_;
 };

@@ -73,8 +73,8 @@ class BlockEdges {
 
  private:
   [[nodiscard]] const Declared* find(std::string_view name) const {
-    const auto found = definition_.by_name.find(language::upper(name));
-    return found == definition_.by_name.end() ? nullptr : &definition_.variables[found->second];
+    const std::uint32_t* const found = definition_.by_name.find(name);
+    return found == nullptr ? nullptr : &definition_.variables[*found];
   }
 
   /// An output of the block itself, which the world reads as well.
@@ -294,8 +294,8 @@ std::vector<Edge> edges_of(const Definitions& definitions, std::uint32_t top) {
 }
 
 std::uint32_t top_definition(const Definitions& definitions, std::string_view name) {
-  const auto found = definitions.by_name.find(language::upper(name));
-  return found == definitions.by_name.end() ? 0 : found->second;
+  const std::uint32_t* const found = definitions.by_name.find(name);
+  return found == nullptr ? 0 : *found;
 }
 
 const Edge* find_edge(const std::vector<Edge>& edges, std::string_view name) {

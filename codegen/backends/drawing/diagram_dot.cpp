@@ -55,7 +55,7 @@ class Drawing {
   }
 
   DiagramDot run() {
-    const Definition& top = definitions_.list[definitions_.by_name.at(upper(name_))];
+    const Definition& top = definitions_.list[definitions_.by_name.at(name_)];
     std::string title = fmt::format("<B>{}</B>", dot::escaped(name_));
     if (sample_time_ns_ > 0) {
       title += dot::small_text("  TS = " + dot::duration_of(sample_time_ns_));
@@ -475,7 +475,7 @@ class Drawing {
   }
 
   static const Declared* find(const Definition& definition, std::string_view name) {
-    return &definition.variables[definition.by_name.at(upper(name))];
+    return &definition.variables[definition.by_name.at(name)];
   }
 
   Diagnostics diagnostics_;  ///< none: the text has been compiled

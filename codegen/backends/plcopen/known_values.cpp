@@ -20,7 +20,7 @@ void agree(KnownValues::Answer& answer, std::optional<double> value) {
 KnownValues::KnownValues(const Program& program, const Definitions& definitions)
     : program_(program), machine_(program), prefixes_(definitions.list.size()) {
   machine_.step();
-  place(definitions, definitions.by_name.at(language::upper(program.graph.name)), "");
+  place(definitions, definitions.by_name.at(program.graph.name), "");
 }
 
 void KnownValues::place(const Definitions& definitions, std::uint32_t index, const std::string& prefix) {

@@ -381,7 +381,7 @@ class NetworkBuilder {
     if (declared.kind == Declared::Kind::UserBlock) {
       const Called& called = call_at_.at(upper(declared.field.name));
       const Definition& inner = definitions_.list[declared.definition];
-      const Declared& output = inner.variables[inner.by_name.at(upper(reference.pin.text))];
+      const Declared& output = inner.variables[inner.by_name.at(reference.pin.text)];
       if (now_ <= called.statement) {
         refuse(reference.name.span,
                fmt::format("{}.{} is read before {} is called, and an IEC compiler assigns it in the call",
@@ -414,7 +414,7 @@ class NetworkBuilder {
   // --- looking things up ---
 
   [[nodiscard]] const Declared& find(std::string_view name) const {
-    return definition_.variables[definition_.by_name.at(upper(name))];
+    return definition_.variables[definition_.by_name.at(name)];
   }
 
   [[nodiscard]] std::map<std::string, std::string> names_inside(const Declared& declared) const {

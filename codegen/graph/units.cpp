@@ -41,16 +41,13 @@ class Checker {
         constants_.emplace(inner.wire.index, inner.unit);
       }
     }
-    for (const Port& input : graph_.inputs) {
-      inputs_.push_back(declared(input.unit));
+    first_output_.reserve(graph_.nodes.size());
+    std::size_t outputs = 0;
+    for (const Node& node : graph_.nodes) {
+      first_output_.push_back(static_cast<std::uint32_t>(outputs));
+      outputs += node.block == nullptr ? 1 : node.block->outputs.size();
     }
-    for (const Parameter& parameter : graph_.parameters) {
-      parameters_.push_back(declared(parameter.path.find('.') == std::string::npos ||
-                                             parameter.field.unit.find('\'') == std::string_view::npos
-                                         ? parameter.field.unit
-                                         : std::string_view{}));
-    }
-    outputs_.resize(graph_.nodes.size());
+    outputs_.resize(outputs);
     prepared_.assign(graph_.nodes.size(), false);
     first_variable_.assign(graph_.nodes.size(), none);
     for (const Action& action : schedule.actions) {
@@ -110,25 +107,31 @@ class Checker {
  private:
   static constexpr auto none = std::numeric_limits<std::uint32_t>::max();
 
-  MaybeUnit known(std::string_view text) {
+  const MaybeUnit& known(std::string_view text) {
     if (text.empty()) {
-      return std::nullopt;
+      return nothing_;
     }
-    const auto found = cache_.find(text);
-    if (found != cache_.end()) {
-      return found->second;
+    const auto [place, is_new] = known_.try_emplace(text);
+    if (is_new) {
+      std::string reason;
+      place->second = parse_unit(text, reason);
     }
-    std::string reason;
-    return cache_.emplace(text, parse_unit(text, reason)).first->second;
+    return place->second;
   }
 
   /// A unit that the text states.
-  MaybeUnit declared(std::string_view text) {
-    MaybeUnit unit = known(text);
-    if (unit) {
-      unit->declared = true;
+  const MaybeUnit& declared(std::string_view text) {
+    if (text.empty()) {
+      return nothing_;
     }
-    return unit;
+    const auto [place, is_new] = declared_.try_emplace(text);
+    if (is_new) {
+      place->second = known(text);
+      if (place->second) {
+        place->second->declared = true;
+      }
+    }
+    return place->second;
   }
 
   /// Gives a node's outputs their units; a block's pins are connected in a second pass, when all variables exist.
@@ -136,13 +139,11 @@ class Checker {
     prepared_[index] = true;
     const Node& node = graph_.nodes[index];
     if (node.block == nullptr) {
-      outputs_[index] = {operation(node)};
+      outputs_[first_output_[index]] = operation(node);
       return;
     }
-    std::vector<MaybeUnit>& units = outputs_[index];
-    units.reserve(node.block->outputs.size());
-    for (const Field& field : node.block->outputs) {
-      units.push_back(of_field(index, field));
+    for (std::size_t port = 0; port < node.block->outputs.size(); ++port) {
+      outputs_[first_output_[index] + port] = of_field(index, node.block->outputs[port]);
     }
     // Inputs known by now give the variables their units, so that what follows is checked against them.
     connect_pins(index, true);
@@ -164,8 +165,7 @@ class Checker {
         continue;
       }
       const MaybeUnit expected = of_field(index, field);
-      MaybeUnit stated;
-      const MaybeUnit& given = of_wire(wire, stated);
+      const MaybeUnit& given = of_wire(wire);
       if (!given || !expected) {
         continue;
       }
@@ -274,29 +274,26 @@ class Checker {
     return first_variable(index) + static_cast<std::uint32_t>(std::ranges::find(names, name) - names.begin());
   }
 
-  /// The unit of a wire, where it is kept; that of a literal is put into `stated`.
-  const MaybeUnit& of_wire(const Wire& wire, MaybeUnit& stated) {
+  const MaybeUnit& of_wire(const Wire& wire) {
     switch (wire.from) {
       case Wire::From::Input:
-        return inputs_[wire.index];
+        return declared(graph_.inputs[wire.index].unit);
       case Wire::From::Parameter:
-        return parameters_[wire.index];
+        return of_parameter(graph_.parameters[wire.index]);
       case Wire::From::Node:
-        if (wire.port < outputs_[wire.index].size()) {
-          return outputs_[wire.index][wire.port];
-        }
-        break;
+        return outputs_[first_output_[wire.index] + wire.port];
       case Wire::From::Literal:
-        stated = declared(literal_unit(wire));
-        break;
+        return declared(literal_unit(wire));
       default:
-        break;
+        return nothing_;
     }
-    return stated;
   }
-  MaybeUnit of_wire(const Wire& wire) {
-    MaybeUnit stated;
-    return of_wire(wire, stated);
+
+  /// What a block says of its own parameter by a unit variable, the text cannot state.
+  const MaybeUnit& of_parameter(const Parameter& parameter) {
+    const bool is_of_block = parameter.path.find('.') != std::string::npos;
+    const bool is_variable = parameter.field.unit.find('\'') != std::string_view::npos;
+    return is_of_block && is_variable ? nothing_ : declared(parameter.field.unit);
   }
 
   /// The unit of an expression. A literal takes the unit of what it is added to, and counts as a number in products.
@@ -432,10 +429,11 @@ class Checker {
 
   const Graph& graph_;
   Diagnostics& diagnostics_;
-  std::map<std::string_view, MaybeUnit> cache_;
-  std::vector<MaybeUnit> inputs_;
-  std::vector<MaybeUnit> parameters_;
-  std::vector<std::vector<MaybeUnit>> outputs_;
+  const MaybeUnit nothing_;
+  std::map<std::string_view, MaybeUnit> known_;     ///< by text
+  std::map<std::string_view, MaybeUnit> declared_;  ///< the same, as the text states them
+  std::vector<MaybeUnit> outputs_;                  ///< of all nodes, one behind the other
+  std::vector<std::uint32_t> first_output_;         ///< by node
   std::vector<bool> prepared_;
   std::unordered_map<std::uint32_t, std::string_view> constants_;  ///< by literal: the units of those that have one
   UnitSolver solver_;

@@ -32,6 +32,7 @@ struct FamilyText {
   std::string_view name;  ///< as in @family and in reports
   std::string_view meaning;
   bool of_a_part = false;  ///< done by one part to what it passes on, and never to a balance of several
+  bool of_a_port = false;  ///< done where numbers come in and go out, and never between two parts of the machine
 };
 
 inline constexpr std::array family_texts{
@@ -50,7 +51,10 @@ inline constexpr std::array family_texts{
     FamilyText{Family::PeriodicOverPosition, "periodic_over_position", "what repeats itself over a position"},
     FamilyText{Family::PeriodicInTime, "periodic_in_time",
                "what repeats itself with the time, whatever the machine does"},
-    FamilyText{Family::Logging, "logging", "what converters, clocks and loggers do to values and to their times"},
+    FamilyText{.family = Family::Logging,
+               .name = "logging",
+               .meaning = "what converters, clocks and loggers do to values and to their times",
+               .of_a_port = true},
     FamilyText{Family::Coupling, "coupling", "what a signal from elsewhere adds or changes"},
     FamilyText{Family::Offset, "offset", "a constant that is added"}};
 

@@ -62,6 +62,13 @@ inline constexpr Threshold own_choice{
     "how much less a set has to leave that the search chose by this very run, among all that it tried, than one that "
     "was found by predicting stretches",
     0.0};
+inline constexpr Threshold displaced{"displaced",
+                                     1.39,
+                                     "ln",
+                                     "convention: twice as good, in size",
+                                     "how much less a set has to leave for each converter that it puts between two "
+                                     "parts of a machine",
+                                     0.0};
 inline constexpr Threshold reach{"reach", 10.0, "1", "convention: a decade",
                                  "how many times its value a known parameter may move beside a set: what moves it "
                                  "further cancels it, and is no cause"};
@@ -173,6 +180,7 @@ inline constexpr std::array all{work,
                                 price,
                                 model_error,
                                 own_choice,
+                                displaced,
                                 reach,
                                 another_place,
                                 draws,

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "blocks/families.hpp"
 #include "codegen/compile.hpp"
 #include "codegen/graph/units.hpp"
 #include "diagnosis/effects/insertion.hpp"
@@ -60,10 +61,11 @@ class Enumeration {
         index_(top_definition(definitions_, base.program->graph.name)),
         edges_(edges_of(definitions_, index_)),
         places_(instances_of(definitions_, index_)),
-        units_(units::Solution(base.program->graph, base.program->schedule).outputs()) {}
+        units_(units::Solution(base.program->graph, base.program->schedule).outputs()),
+        kinds_(effect_kinds(definitions_)) {}
 
   std::vector<Candidate> list() {
-    for (const EffectKind& kind : effect_kinds(definitions_)) {
+    for (const EffectKind& kind : kinds_) {
       if (!is_tried(options_.effects, kind.id) || (options_.effects.empty() && !kind.untried.empty())) {
         continue;
       }
@@ -321,12 +323,43 @@ class Enumeration {
       if (candidate.kind.of_output) {
         candidate.input = changed;
       }
+      candidate.variant.effects.back().is_displaced = is_displaced(candidate);
       if (!options_.driver && !makes_sense(candidate, changed)) {
         return true;
       }
     }
     candidates_.push_back(std::move(candidate));
     return true;
+  }
+
+  /// A wire as it was before effects were added to it.
+  [[nodiscard]] Wire before_effects(const Candidate& candidate, Wire wire) const {
+    const Graph& graph = candidate.variant.program->graph;
+    for (bool moved = true; moved;) {
+      moved = false;
+      for (const Applied& one : candidate.variant.effects) {
+        const auto kind = std::ranges::find(kinds_, one.block, &EffectKind::block);
+        if (!one.is_own && kind != kinds_.end() && wire.from == Wire::From::Node &&
+            language::same_name(graph.nodes[wire.index].path, one.instance)) {
+          wire = wire_of(graph, graph.nodes[wire.index], kind->input);
+          moved = true;
+        }
+      }
+    }
+    return wire;
+  }
+
+  /// Whether a converter or a logger is put between two parts of the machine: where no signal is that an input gives or
+  /// an output shows.
+  [[nodiscard]] bool is_displaced(const Candidate& candidate) const {
+    const auto family = std::ranges::find(family_texts, candidate.kind.family, &FamilyText::name);
+    if (candidate.kind.change != Change::Insert || family == family_texts.end() || !family->of_a_port) {
+      return false;
+    }
+    const Wire signal = before_effects(candidate, candidate.input);
+    return signal.from != Wire::From::Input &&
+           std::ranges::none_of(candidate.variant.program->graph.outputs,
+                                [&](const Port& port) { return before_effects(candidate, port.wire) == signal; });
   }
 
   /// What is fed back comes from what the effect changes; a coupling is of another signal than the one that is there
@@ -359,6 +392,7 @@ class Enumeration {
   std::vector<Edge> edges_;
   std::vector<BlockInstance> places_;
   std::vector<std::vector<std::string>> units_;  ///< of the base, by node and output
+  std::vector<EffectKind> kinds_;
   std::vector<Candidate> candidates_{};
 };
 

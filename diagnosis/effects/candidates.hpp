@@ -21,6 +21,7 @@ struct Applied {
   std::string block{};               ///< HY_CREEP
   std::string edge{};                ///< HYST.XOUT; of a richer block, its output
   bool at_port = false;              ///< that edge is an input or an output of the diagram
+  bool is_displaced = false;         ///< a converter's, between two parts of the machine
   bool is_own = false;               ///< of a block that the diagram has: parameters are moved, nothing is added
   std::vector<std::string> twins{};  ///< edges on which it gained as much: not told apart, and not fitted
   std::string instance{};            ///< path of the block that carries it

@@ -34,12 +34,15 @@ std::vector<const Explanation*> searched_sets(const Judged& judged) {
 }
 
 RunSet run_of(const Explanation& one, const VectorXd& residuals, const std::map<std::string, std::string>& family_of) {
+  const std::vector<Applied>& effects = one.variant.effects;
   std::set<std::string> families;
-  for (const Applied& effect : one.variant.effects) {
+  for (const Applied& effect : effects) {
     families.insert(family_of.at(effect.effect));
   }
-  return {
-      .residuals = residuals, .families = {families.begin(), families.end()}, .effects = one.variant.effects.size()};
+  return {.residuals = residuals,
+          .families = {families.begin(), families.end()},
+          .effects = effects.size(),
+          .displaced = static_cast<std::size_t>(std::ranges::count(effects, true, &Applied::is_displaced))};
 }
 
 /// Of what was told and has no run: what cannot be run is no nearer to the record than the calibrated diagram.

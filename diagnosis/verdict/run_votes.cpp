@@ -40,6 +40,7 @@ std::vector<double> votes_of_runs(const Task& task, std::span<const RunSet> sets
     energies.push_back(energies_of(task, one.residuals));
   }
   const double own_choice = rules[policy::own_choice];
+  const double displaced = rules[policy::displaced];
   Draws draws(seed, static_cast<std::size_t>(energies.front().squares.rows()), rules);
   double sum = 0.0;
   for (int draw = 0; draw < static_cast<int>(policy::draws.value); ++draw) {
@@ -48,7 +49,8 @@ std::vector<double> votes_of_runs(const Task& task, std::span<const RunSet> sets
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < sets.size(); ++i) {
       const double left = log_square(energies[i].squares, energies[i].counts, draws.weights()) +
-                          draws.cost(sets[i].families, sets[i].effects) + (sets[i].is_own_choice ? own_choice : 0.0);
+                          draws.cost(sets[i].families, sets[i].effects) + (sets[i].is_own_choice ? own_choice : 0.0) +
+                          displaced * static_cast<double>(sets[i].displaced);
       if (left < least) {
         least = left;
         best = i;

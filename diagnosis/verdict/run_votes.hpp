@@ -24,6 +24,7 @@ struct RunSet {
   VectorXd residuals{};                 ///< of all outputs, over the whole records
   std::vector<std::string> families{};  ///< of the effects, sorted, each once
   std::size_t effects = 0;
+  std::size_t displaced = 0;   ///< of these, converters between two parts of the machine
   bool is_own_choice = false;  ///< chosen by its run, among thousands, where another was found without it
 };
 

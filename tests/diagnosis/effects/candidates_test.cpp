@@ -272,6 +272,51 @@ TEST(Candidates, AClockIsTheRecords) {
               UnorderedElementsAre("U", "W", "SPEED.XOUT"));
 }
 
+/// The edges on which an effect is where numbers come in or go out.
+std::vector<std::string> places_in(std::vector<Candidate> list) {
+  std::erase_if(list, [](const Candidate& one) { return one.own().is_displaced; });
+  return edges_in(list);
+}
+
+TEST(Candidates, AConverterBetweenTwoPartsIsDisplaced) {
+  EXPECT_THAT(places_in(candidates(whole_machine, "MACHINE", {.effects = {"quantization"}})),
+              UnorderedElementsAre("U", "W", "SPEED.XOUT"));
+  for (const Candidate& other : candidates(whole_machine, "MACHINE", {.effects = {"lag", "backlash"}})) {
+    EXPECT_FALSE(other.own().is_displaced) << other.own().effect;
+  }
+}
+
+// An encoder is where the controller reads it, too; and it is read through what a delay on the way has changed.
+TEST(Candidates, AConverterIsWhereverTheSignalOfAPortIsRead) {
+  const std::string loop = R"(FUNCTION_BLOCK AXIS  (* @ts 1ms *)
+  VAR_INPUT F : LREAL; END_VAR
+  VAR_OUTPUT X : LREAL; END_VAR
+  VAR SPEED : HY_INTEGRAL; POSITION : HY_INTEGRAL; END_VAR
+  SPEED(XIN := F);
+  POSITION(XIN := SPEED.XOUT);
+  X := POSITION.XOUT;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK LOOP  (* @ts 1ms *)
+  VAR_INPUT REF : LREAL; END_VAR
+  VAR_OUTPUT Y : LREAL; END_VAR
+  VAR LATE : HY_DELAY; GAIN : HY_GAIN; BOUND : HY_LIMIT; PLANT : AXIS; END_VAR
+  GAIN(XIN := REF - LATE.XOUT);
+  BOUND(XIN := GAIN.XOUT);
+  PLANT(F := BOUND.XOUT);
+  LATE(XIN := PLANT.X);
+  Y := PLANT.X;
+END_FUNCTION_BLOCK
+)";
+  const CandidateOptions asked{.effects = {"quantization"}, .again = true};
+  const auto alone = candidates(loop, "LOOP", asked);
+  EXPECT_THAT(places_in(alone), UnorderedElementsAre("REF", "PLANT.X", "Y", "LATE.XIN", "PLANT.POSITION.XOUT"));
+  const auto delayed = candidates(loop, "LOOP", {.effects = {"delay"}});
+  const auto at_output = std::ranges::find(delayed, "Y", [](const Candidate& one) { return one.own().edge; });
+  ASSERT_NE(at_output, delayed.end());
+  EXPECT_THAT(places_in(candidates_of(at_output->variant, "LOOP", asked)),
+              testing::IsSupersetOf({"REF", "PLANT.X", "LATE.XIN"}));
+}
+
 TEST(Candidates, AnotherInputOrColumnMayCouple) {
   const auto inputs = candidates(whole_machine, "MACHINE", {.effects = {"cross_coupling"}});
   std::set<std::string> drivers;

@@ -71,6 +71,19 @@ TEST(RunVotes, SiblingsMakeTheirFamiliesMoreProbable) {
   EXPECT_GT(votes(recorded({"Y"}), sets, prior)[1], votes(recorded({"Y"}), sets)[1] + 0.1);
 }
 
+/// A converter between two parts of a machine has to leave half of what another effect leaves, in size.
+TEST(RunVotes, AConverterInsideMustBeTwiceAsGood) {
+  const auto displaced = [](RunSet set) {
+    set.displaced = 1;
+    return set;
+  };
+  const RunSet friction = leaving({1.0}, {"dry_friction"}, 1);
+  const Task task = recorded({"Y"});
+  EXPECT_GT(votes(task, {friction, leaving({0.6}, {"logging"}, 1)})[1], 0.99);
+  EXPECT_LT(votes(task, {friction, displaced(leaving({0.6}, {"logging"}, 1))})[1], 0.1);
+  EXPECT_GT(votes(task, {friction, displaced(leaving({0.3}, {"logging"}, 1))})[1], 0.99);
+}
+
 /// What a search chose by its run has to leave half of what another leaves, in size; of two such it counts no more.
 TEST(RunVotes, WhatWasChosenByItsRunMustBeTwiceAsGood) {
   const auto of_search = [](RunSet set) {

@@ -35,6 +35,7 @@ enum class Shortage : std::uint16_t {
   trace = 128,   ///< the trace is written to no file
   retain = 256,  ///< the newest state is not on the disk
   lock = 512,    ///< nor is the lock file of the register map
+  change = 1024  ///< there is no socket yet for online changes
 };
 
 enum class PointType { boolean, int16, uint16, int32, uint32, int64, uint64, real32, real64 };

@@ -22,6 +22,10 @@ bool is_want_of_room(int reason) {
   return reason == ENOSPC || reason == EDQUOT || reason == EFBIG;
 }
 
+bool is_trouble_of_disk(int reason) {
+  return is_want_of_room(reason) || reason == EROFS || reason == EIO || reason == ESTALE;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -34,11 +38,13 @@ namespace fs = std::filesystem;
     mend = "give it a shorter name; a generated file is named after its block.";
   } else if (is_want_of_room(reason)) {
     mend = "make room on the disk, or choose another one.";
+  } else if (is_trouble_of_disk(reason)) {
+    mend = "choose another disk; one that could be written before has had an error, and dmesg names it.";
   }
   const Place place{.file = path.string()};
   const auto cause = fmt::format("The file {} cannot be written: {}.", path.string(), std::strerror(reason));
-  if (is_want_of_room(reason)) {
-    throw DiskFullError(error::unwritable_file, place, cause, mend);
+  if (is_trouble_of_disk(reason)) {
+    throw DiskTroubleError(error::unwritable_file, place, cause, mend);
   }
   throw InputError(error::unwritable_file, place, cause, mend);
 }

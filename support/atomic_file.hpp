@@ -17,8 +17,12 @@ namespace hysteron {
 /// part of it, or the largest size of a file.
 [[nodiscard]] bool is_want_of_room(int reason);
 
-/// HY700 for want of room: what passes by itself.
-class DiskFullError : public InputError {
+/// Whether it failed for the state that the disk is in, which may pass: for want of room, or since the disk has an
+/// error, for which the system may have made it read-only.
+[[nodiscard]] bool is_trouble_of_disk(int reason);
+
+/// HY700 for a trouble of the disk: what passes without an edit.
+class DiskTroubleError : public InputError {
  public:
   using InputError::InputError;
 };
@@ -29,7 +33,8 @@ struct OutputFile {
 };
 
 /// Writes one file. Missing folders are made; permissions of an existing file are kept; a symbolic link is followed;
-/// a device or pipe (/dev/stdout) is written in place. Throws InputError HY700, among them DiskFullError.
+/// a device or pipe (/dev/stdout) is written in place. Throws InputError HY700, among them
+/// DiskTroubleError.
 void write_file_atomically(const std::filesystem::path& path, std::string_view contents);
 
 /// Writes a set of files, all or none. All are on the disk before the first is renamed, so that only a failing rename

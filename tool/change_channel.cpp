@@ -20,6 +20,8 @@
 #include <system_error>
 #include <utility>
 
+#include "runtime/host/notices.hpp"
+#include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::tool {
@@ -35,6 +37,7 @@ constexpr milliseconds time_for_a_line{5'000};
 constexpr milliseconds first_word{1'000};
 /// A large diagram is compiled within this.
 constexpr milliseconds time_for_an_answer{600'000};
+constexpr std::chrono::seconds between_tries{10};
 
 std::string problem_text(int number) {
   return std::generic_category().message(number);
@@ -135,50 +138,104 @@ std::optional<std::string> progress_of(const std::string& line) {
                    "name a file of fewer than 108 bytes, in a folder that is there and that this user may write.");
 }
 
-/// What a task that is gone has left is removed.
-void clear_the_way(const std::string& path, const Place& place, const sockaddr_un& address) {
+/// Refuses what is at the name and is not a socket that a task which is gone has left.
+void require_free(const std::string& path, const Place& place, const sockaddr_un& address) {
   struct stat found {};
   if (::lstat(path.c_str(), &found) != 0) {
     return;
   }
   if (!S_ISSOCK(found.st_mode)) {
-    refuse_socket(path, place, "there is a file of that name, which is none");
+    throw InputError(error::unusable_change_socket, place,
+                     fmt::format("There can be no socket {}: a file of that name is there, which is none.", path),
+                     "remove that file, or name another one.");
   }
   if (connect_to(new_socket(), address)) {
     throw InputError(error::file_of_another_task, place, fmt::format("Another task that runs listens on {}.", path),
                      "end that task first, or name another file.");
   }
-  (void)::unlink(path.c_str());
 }
 
 }  // namespace
 
-ChangeListener::ChangeListener(const std::string& path, const Place& place, Answer answer)
-    : path_(path), answer_(std::move(answer)), socket_(new_socket()), end_(::eventfd(0, EFD_CLOEXEC)) {
+ChangeListener::ChangeListener(const std::string& path, const Place& place, Answer answer, Missing missing)
+    : path_(path),
+      answer_(std::move(answer)),
+      missing_(std::move(missing)),
+      socket_(new_socket()),
+      end_(::eventfd(0, EFD_CLOEXEC)) {
   const auto address = address_of(path);
   if (!address) {
     refuse_socket(path, place, "the name is too long, or empty");
   }
-  clear_the_way(path, place, *address);
+  require_free(path, place, *address);
   // Before it has a name: at no moment may another user open it.
-  if (!socket_.is_open() || !end_.is_open() || ::fchmod(socket_.number(), S_IRUSR | S_IWUSR) != 0 ||
-      ::bind(socket_.number(), reinterpret_cast<const sockaddr*>(&*address), sizeof(*address)) != 0 ||
-      ::listen(socket_.number(), 4) != 0) {
+  if (!socket_.is_open() || !end_.is_open() || ::fchmod(socket_.number(), S_IRUSR | S_IWUSR) != 0) {
     refuse_socket(path, place, problem_text(errno));
   }
+  const int problem = listen();
+  listens_ = problem == 0;
+  if (!listens_ && !is_trouble_of_disk(problem)) {
+    refuse_socket(path, place, problem_text(problem));
+  }
+  if (!listens_) {
+    runtime::tell("Online change", fmt::format("there can be no socket {} yet: {}. It is tried again every {} s; the "
+                                               "control goes on.",
+                                               path, problem_text(problem), between_tries.count()));
+    if (missing_) {
+      missing_(true);
+    }
+  }
   thread_ = std::thread([this] { serve(); });
+}
+
+/// What a task that is gone has left is removed. 0, or errno.
+int ChangeListener::listen() const {
+  const auto address = address_of(path_);
+  struct stat found {};
+  if (::lstat(path_.c_str(), &found) == 0 && S_ISSOCK(found.st_mode) && ::unlink(path_.c_str()) != 0) {
+    return errno;
+  }
+  if (::bind(socket_.number(), reinterpret_cast<const sockaddr*>(&*address), sizeof(*address)) != 0 ||
+      ::listen(socket_.number(), 4) != 0) {
+    return errno;
+  }
+  return 0;
+}
+
+/// False where it is to end before.
+bool ChangeListener::listens_at_last() {
+  for (;;) {
+    pollfd wait{.fd = end_.number(), .events = POLLIN, .revents = 0};
+    (void)::poll(&wait, 1, static_cast<int>(milliseconds(between_tries).count()));
+    if (wait.revents != 0) {
+      return false;
+    }
+    if (listen() == 0) {
+      runtime::tell("Online change", fmt::format("the socket {} is there now.", path_), runtime::Weight::notice);
+      if (missing_) {
+        missing_(false);
+      }
+      listens_ = true;
+      return true;
+    }
+  }
 }
 
 ChangeListener::~ChangeListener() {
   const std::uint64_t one = 1;
   [[maybe_unused]] const ssize_t written = ::write(end_.number(), &one, sizeof(one));
   thread_.join();
-  (void)::unlink(path_.c_str());
+  if (listens_) {
+    (void)::unlink(path_.c_str());
+  }
 }
 
 void ChangeListener::serve() {
   // What is compiled here must not be felt by the task where that has no real-time scheduling.
   (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10);
+  if (!listens_ && !listens_at_last()) {
+    return;
+  }
   for (;;) {
     std::array<pollfd, 2> wait{pollfd{.fd = socket_.number(), .events = POLLIN, .revents = 0},
                                pollfd{.fd = end_.number(), .events = POLLIN, .revents = 0}};

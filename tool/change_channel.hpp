@@ -21,10 +21,12 @@ class ChangeListener {
   /// Tells who asked what is being done, as the end of a sentence that begins with "the task".
   using Progress = std::function<void(std::string_view)>;
   using Answer = std::function<std::string(const std::string& request, const Progress& progress)>;
+  /// Told whether there is no socket, where that changes.
+  using Missing = std::function<void(bool)>;
 
-  /// A socket of a task that is gone is replaced. Throws InputError at `place`: HY815 where another task listens there,
-  /// HY854 where there can be no socket.
-  ChangeListener(const std::string& path, const Place& place, Answer answer);
+  /// A socket of a task that is gone is replaced. Where the disk takes none now, it is tried again. Throws InputError
+  /// at `place`: HY815 where another task listens there, HY854 where there can be no socket.
+  ChangeListener(const std::string& path, const Place& place, Answer answer, Missing missing = {});
   /// Waits for the answer that is being made.
   ~ChangeListener();
   ChangeListener(const ChangeListener&) = delete;
@@ -33,13 +35,17 @@ class ChangeListener {
   ChangeListener& operator=(ChangeListener&&) = delete;
 
  private:
+  [[nodiscard]] int listen() const;
+  [[nodiscard]] bool listens_at_last();
   void serve();
   void serve_one(const Descriptor& client) const;
 
   std::string path_;
   Answer answer_;
+  Missing missing_;
   Descriptor socket_{};
-  Descriptor end_{};  ///< readable once it ends
+  Descriptor end_{};      ///< readable once it ends
+  bool listens_ = false;  ///< of the thread, once there is one
   std::thread thread_;
 };
 

@@ -71,7 +71,10 @@ Newest newest_of(runtime::RetainFolder& folder, const std::string& name) {
       }
     }
   } catch (const std::system_error& problem) {
-    refuse(name, problem.what(), "give this user the right to read it.");
+    refuse(name, problem.what(),
+           problem.code() == std::errc::not_a_directory
+               ? "name the folder that stands at `folder` under [retain] of the run file."
+               : "give this user the right to read it.");
   }
   if (!newest) {
     refuse(name, is_any ? "no slot is whole." : "there are no retained values here.",

@@ -50,11 +50,30 @@ struct ServeOptions {
   runtime::web::PageOptions page;
 };
 
+/// The compiled program needs room for temporary files, and a compiler that works. Where nobody asked for it by name, a
+/// task that cannot have it is interpreted.
+std::unique_ptr<runtime::StepProgram> program_by(Engine& engine, const ServeOptions& options, const Program& diagram,
+                                                 const std::vector<InnerSignal>& inner, const std::string& picture) {
+  try {
+    return step_program(diagram, engine, options.diagram.float32, inner, picture);
+  } catch (const InputError& refused) {
+    if (engine == Engine::interpreter || !options.engine.empty()) {
+      throw;
+    }
+    const Diagnostic& why = refused.diagnostics().all().front();
+    runtime::tell("Engine", fmt::format("this run is interpreted, with the same bits in a longer step. It cannot be "
+                                        "compiled: HY{}: {} Mend: {}",
+                                        why.number, why.cause, why.mend));
+  }
+  engine = Engine::interpreter;
+  return step_program(diagram, engine, options.diagram.float32, inner, picture);
+}
+
 int serve(const ServeOptions& options, Console& console) {
   Diagnostics warnings;
   LoadedVersion version = first_version(options.diagram, warnings);
   const Program& diagram = version.diagram;
-  const Engine engine = engine_of(options.engine);
+  Engine engine = engine_of(options.engine);
   const std::string run_text = read_text_file(options.config);
   auto config = runtime::parse_run_config(options.config, run_text, shape_of(diagram, engine, options.diagram.float32));
   const auto web = runtime::web::page_server_options(config, options.page);
@@ -63,7 +82,7 @@ int serve(const ServeOptions& options, Console& console) {
   }
   const auto inner = web ? inner_signals(diagram) : std::vector<InnerSignal>();
   const std::string picture = web ? live_diagram(diagram.graph, inner) : "";
-  auto program = step_program(diagram, engine, options.diagram.float32, inner, picture);
+  auto program = program_by(engine, options, diagram, inner, picture);
   std::vector<InputFile> inputs = inputs_of(options.diagram);
   inputs.push_back({.file = options.config, .named_by = "--config"});
   inputs.push_back({.file = options.page.token_file, .named_by = "--web-token-file"});
@@ -83,10 +102,12 @@ int serve(const ServeOptions& options, Console& console) {
   const auto take_changes = [&, where = config.online_change](runtime::OnlineChange& change,
                                                               std::string& said) -> std::shared_ptr<void> {
     said += fmt::format("; online change on {}", where->socket);
-    return std::make_shared<ChangeListener>(where->socket, where->place,
-                                            [&](const std::string& request, const ChangeListener::Progress& progress) {
-                                              return versions.answer(change, request, progress);
-                                            });
+    return std::make_shared<ChangeListener>(
+        where->socket, where->place,
+        [&](const std::string& request, const ChangeListener::Progress& progress) {
+          return versions.answer(change, request, progress);
+        },
+        [&](bool now) { change.cannot_be_asked_for(now); });
   };
   const bool well = runtime::run_host(running, std::move(config),
                                       {.how = engine == Engine::compiled ? "compiled" : "interpreted",

@@ -197,6 +197,7 @@ class CertificateCare {
     }
     if (found.fault) {
       task_->tls_fault(static_cast<std::uint8_t>(*found.fault));
+      task_->tls_days(found.days);
     }
     for (const std::string& line : found.lines) {
       tell("TLS", line);

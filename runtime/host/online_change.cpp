@@ -277,6 +277,9 @@ ChangeVerdict OnlineChange::propose(Plan& plan) {
   if (trace_ != nullptr) {
     plan.next.traced = std::make_unique<TraceProgram>(plan.next.program());
   }
+  if (plan.next.sound == nullptr) {
+    plan.next.sound = std::make_unique<SoundState>(plan.next.program());
+  }
   program_->propose(plan.change);
   if (!wait_or_withdraw([&] { return program_->is_decided(); }, [&] { return program_->withdraw(); })) {
     refuse_for_now("The task did not take the change up: it steps the diagram no more.");

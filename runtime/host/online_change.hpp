@@ -74,6 +74,8 @@ class OnlineChange {
   /// have is carried back, but for parameters that were taken as given and that nobody has changed since: they are as
   /// before. A second time is forward again. Throws as change_to, HY853 too where there is none.
   ChangeReport change_back(const ChangeWish& wish);
+  /// Says in task.shortages whether there is no socket yet on which a change may be asked for.
+  void cannot_be_asked_for(bool now) noexcept { task_->door().shortage(Shortage::change, now); }
   /// Says on standard error, and in task.online_change, that a change was refused: here, or before it came here.
   void tell_refused(const InputError& refused) const;
 

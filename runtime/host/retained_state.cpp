@@ -62,8 +62,8 @@ RetainedState::RetainedState(const RetainConfig& config, StepProgram& program, s
   if (!recovery_.refused.empty()) {
     throw InputError(
         error::retained_values_unfit, config.place, recovery_.refused,
-        "run the diagram that they are of, by the engine that retained them, name another folder, or write "
-        "mismatch = \"cold\", which puts the files aside.");
+        "run the diagram that they are of, name another folder, or write mismatch = \"cold\", which puts the files "
+        "aside.");
   }
   if (recovery_.values) {
     const RetainedValues& values = *recovery_.values;
@@ -79,19 +79,23 @@ RetainedState::RetainedState(const RetainConfig& config, StepProgram& program, s
 }
 
 void RetainedState::take(StepProgram& program, std::span<const double> given) {
+  set_parameters(program, recovery_.values->parameters);
+  program.restore(recovery_.values->state);
+  told_ = fmt::format(", from retained state {}", recovery_.sequence) + not_as_given(program, given);
+}
+
+std::string RetainedState::not_as_given(const StepProgram& program, std::span<const double> given) const {
   std::vector<std::string> others;
   for (std::size_t i = 0; i < given.size(); ++i) {
-    program.set_parameter(i, recovery_.values->parameters[i]);
     if (!is_same_value(program.parameter(i), given[i])) {
       others.push_back(program.shape().parameters[i].name);
     }
   }
-  program.restore(recovery_.values->state);
-  told_ = fmt::format(", from retained state {}", recovery_.sequence);
-  if (!others.empty()) {
-    told_ += fmt::format(" with {} parameter{} as retained and not as given: {} (an empty {} gives those given)",
-                         others.size(), others.size() == 1 ? "" : "s", names_text(others), config_.folder);
-  }
+  return others.empty() ? ""
+                        : fmt::format(
+                              " with {} parameter{} as retained and not as given: {} (an empty {} gives those "
+                              "given)",
+                              others.size(), others.size() == 1 ? "" : "s", names_text(others), config_.folder);
 }
 
 void RetainedState::carry(StepProgram& program, std::span<const double> given, const KeptLayout& kept) {
@@ -102,9 +106,9 @@ void RetainedState::carry(StepProgram& program, std::span<const double> given, c
                               : CarriedValues{.parameters = {given.begin(), given.end()}};
   if (const std::string refused = refusal_of(shape, carried.parameters, given); !refused.empty()) {
     throw InputError(error::retained_values_unfit, config_.place,
-                     "The retained parameters cannot be beside those of the edited diagram: " + refused,
-                     fmt::format("give the parameters that go together in --params and empty {}, or write mismatch = "
-                                 "\"cold\", which puts the files aside.",
+                     "The retained parameters cannot be beside those of the diagram: " + refused,
+                     fmt::format("give others by `hysteron retained {} --set P.toml`, or write mismatch = \"cold\", "
+                                 "which puts the files aside.",
                                  config_.folder));
   }
   set_parameters(program, carried.parameters);
@@ -119,12 +123,11 @@ void RetainedState::carry(StepProgram& program, std::span<const double> given, c
     told_ += fmt::format(" of another version: {} of {} parameters and {} of {} states carried over by name",
                          carried.parameters_taken, shape.parameters.size(), carried.states_taken, shape.state.size());
   }
+  told_ += not_as_given(program, given);
 }
 
 void RetainedState::put_aside() {
-  if (const auto problem = runtime::put_aside(folder_, recovery_); !problem.empty()) {
-    refuse_folder(config_, problem);
-  }
+  runtime::put_aside(folder_, recovery_);
 }
 
 }  // namespace hysteron::runtime

@@ -34,13 +34,15 @@ class RetainedState {
   [[nodiscard]] const std::vector<std::string>& left() const { return left_; }
   [[nodiscard]] const std::vector<std::byte>& after_reset() const { return after_reset_; }
   /// Before anything is written: files that do not fit and are not wanted are renamed, those carried over are copied.
-  /// Throws InputError HY816.
+  /// What cannot be yet is left to the Retainer.
   void put_aside();
   [[nodiscard]] RetainFolder& folder() { return folder_; }
   [[nodiscard]] const Recovery& recovery() const { return recovery_; }
 
  private:
   void take(StepProgram& program, std::span<const double> given);
+  /// For the status line: the parameters that are retained and not as they were given; empty where there are none.
+  [[nodiscard]] std::string not_as_given(const StepProgram& program, std::span<const double> given) const;
   void carry(StepProgram& program, std::span<const double> given, const KeptLayout& kept);
 
   RetainConfig config_;

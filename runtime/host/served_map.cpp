@@ -22,7 +22,7 @@ template <class Work>
 auto placed(const Place& place, const Work& work) {
   try {
     return work();
-  } catch (const DiskFullError&) {
+  } catch (const DiskTroubleError&) {
     throw;  // it passes, and nobody is refused for it
   } catch (const InputError& refused) {
     Diagnostics diagnostics;
@@ -199,8 +199,8 @@ std::string ServedMap::try_to_write(const std::string& lock_text) {
   std::string problem;
   try {
     write_lock_file(*config_->modbus, lock_text);
-  } catch (const DiskFullError& full) {
-    problem = full.diagnostics().all().front().cause;
+  } catch (const DiskTroubleError& trouble) {
+    problem = trouble.diagnostics().all().front().cause;
   }
   const std::scoped_lock lock(unwritten_mutex_);
   unwritten_ = problem.empty() ? "" : lock_text;

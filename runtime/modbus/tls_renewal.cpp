@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "support/errors.hpp"
@@ -50,6 +51,8 @@ TlsRenewal::Found TlsRenewal::look(Clock::time_point now, std::time_t today) {
   // Once a day of the clock: one that jumps tells once more at the most.
   const std::time_t day = today / seconds_a_day;
   found.fault = serving_->fault_at(today);
+  found.days =
+      static_cast<std::uint16_t>(std::clamp<std::time_t>((serving_->ends() - today) / seconds_a_day, 0, most_days));
   if (std::string line = told_ == day ? "" : line_on_dates(today, *found.fault); !line.empty()) {
     told_ = day;
     found.lines.push_back(std::move(line));

@@ -21,6 +21,8 @@ class TlsRenewal {
 
   /// How long the files must rest before they are read: certificate and key are written one after the other.
   static constexpr std::chrono::seconds interval{5};
+  /// As many days as are told at the most.
+  static constexpr std::time_t most_days = 65'534;
   /// From when on the end of the certificate is told of, once a day.
   static constexpr int days_before = 30;
 
@@ -30,6 +32,7 @@ class TlsRenewal {
   struct Found {
     std::shared_ptr<const TlsContext> renewed{};  ///< for connections from now on; none: as before
     std::optional<TlsFault> fault{};              ///< of what serves; none: it was not looked at
+    std::uint16_t days = 0;                       ///< with `fault`: until its certificate ends
     std::vector<std::string> lines{};             ///< for a log
   };
   /// To be called as time goes by; looks once an interval. `today` by the wall clock, which may jump.

@@ -24,6 +24,7 @@
 #include "runtime/task/carry.hpp"
 #include "runtime/task/live_row.hpp"
 #include "runtime/task/retain.hpp"
+#include "runtime/task/sound_state.hpp"
 #include "runtime/task/step_program.hpp"
 #include "runtime/task/trace.hpp"
 
@@ -47,9 +48,11 @@ class ProgramVersion {
     program_->inner_values(inner_values_);
     return inner_values_;
   }
-  /// Where its states are retained and its trace is begun. Made when it takes over for the first time.
+  /// Where its states are retained, its trace is begun and its sound state is kept. Made when it takes over for the
+  /// first time; of the first version, the task has its own.
   std::unique_ptr<RetainImage> retained{};
   std::unique_ptr<TraceProgram> traced{};
+  std::unique_ptr<SoundState> sound{};
   /// Where the live page sees it; null of the first version.
   std::shared_ptr<LiveRow> live{};
 

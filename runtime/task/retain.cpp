@@ -146,6 +146,20 @@ Slot decode_slot(std::span<const std::byte> bytes) {
   return slot;
 }
 
+namespace {
+
+/// A layout without its engine: engines of one diagram have the same values, which lie in other bytes.
+std::string diagram_of(std::string layout) {
+  for (const std::string_view engine : {"-interpreter", "-compiled"}) {
+    if (const auto at = layout.find(engine); at != std::string::npos) {
+      layout.erase(at, engine.size());
+    }
+  }
+  return layout;
+}
+
+}  // namespace
+
 Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy policy, const RetainChecks& checks) {
   std::array<Slot, 2> slots;
   std::string unsound;
@@ -166,19 +180,21 @@ Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy p
   Recovery recovery{.sequence = sequence_of(slot), .next_slot = 1 - newest};
   const bool any_broken = std::ranges::any_of(slots, [](const Slot& one) { return one.status == SlotStatus::broken; });
   const bool is_whole = slot.status == SlotStatus::whole;
-  const bool is_of_program = is_whole && slot.values.layout == layout;
-  const std::string unfit = is_of_program && checks.refusal ? checks.refusal(slot.values) : "";
-  const bool is_carried = policy == MismatchPolicy::carry && is_whole && !(is_of_program && unfit.empty()) &&
-                          !slot.values.described.empty();
-  if ((is_of_program && unfit.empty()) || is_carried) {
+  const bool is_of_diagram = is_whole && diagram_of(slot.values.layout) == diagram_of(layout);
+  const std::string unfit = is_of_diagram && checks.refusal ? checks.refusal(slot.values) : "";
+  const bool is_taken = is_of_diagram && unfit.empty() && slot.values.layout == layout;
+  const bool is_of_other_engine = is_of_diagram && unfit.empty() && !is_taken && !slot.values.described.empty();
+  const bool is_edited =
+      policy == MismatchPolicy::carry && is_whole && !is_taken && !is_of_other_engine && !slot.values.described.empty();
+  if (is_taken || is_of_other_engine || is_edited) {
     recovery.values = slot.values;
-    recovery.by_name = is_carried;
+    recovery.by_name = !is_taken;
     if (!unsound.empty()) {
       recovery.note = "in one retain slot " + unsound + " was not finite; the other was taken";
     } else if (any_broken) {
       recovery.note = "one retain slot was broken; the other was taken";
     }
-    recovery.aside.at(newest) = is_carried;
+    recovery.aside.at(newest) = is_edited;
     return recovery;
   }
   if (!is_whole && !any_broken) {
@@ -186,7 +202,7 @@ Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy p
     return recovery;  // a first start
   }
   const std::string what = !unfit.empty()     ? "The retained parameters cannot be: " + unfit
-                           : is_whole         ? "The retained values are of another diagram, or of another engine."
+                           : is_whole         ? "The retained values are of another diagram."
                            : !unsound.empty() ? "No retain slot can be taken: " + unsound + " is not finite."
                                               : "No retain slot is whole.";
   if (policy != MismatchPolicy::cold) {
@@ -201,14 +217,18 @@ Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy p
   return recovery;
 }
 
-std::string put_aside(RetainFiles& files, const Recovery& recovery) {
-  std::string problems;
+std::string put_aside(RetainFiles& files, Recovery& recovery) {
   for (std::size_t i = 0; i < recovery.aside.size(); ++i) {
+    std::string problem;
     if (recovery.aside.at(i)) {
-      problems += recovery.by_name ? files.copy_aside(i) : files.put_aside(i);
+      problem = recovery.by_name ? files.copy_aside(i) : files.put_aside(i);
     }
+    if (!problem.empty()) {
+      return problem;
+    }
+    recovery.aside.at(i) = false;
   }
-  return problems;
+  return {};
 }
 
 RetainImage::RetainImage(const StepProgram& program, std::vector<std::byte> after_reset,
@@ -226,6 +246,7 @@ Retainer::Retainer(RetainFiles& files, const StepProgram& program, const Recover
     : files_(&files),
       inputs_(std::move(inputs)),
       first_(program, std::move(after_reset), inputs_),
+      start_(start),
       slot_(start.next_slot),
       sequence_(start.sequence),
       written_(start.sequence) {
@@ -264,7 +285,11 @@ void Retainer::offer(const StepProgram& program, std::uint64_t commits, std::spa
 
 std::string Retainer::write(const RetainImage& image, const RetainedValues& values) {
   const std::string bad = image.after_reset_.empty() ? "" : not_finite(*image.shape_, values.state, image.after_reset_);
-  return bad.empty() ? files_->write(slot_, encode_slot(values)) : bad + " is not finite";
+  if (!bad.empty()) {
+    return bad + " is not finite";
+  }
+  const std::string problem = put_aside(*files_, start_);
+  return problem.empty() ? files_->write(slot_, encode_slot(values)) : problem;
 }
 
 void Retainer::write_newest() {

@@ -89,7 +89,8 @@ class RetainFolder final : public RetainFiles {
   Descriptor held_{};
 };
 
-/// What a start does with the values of another diagram, of an edited one, or of another engine.
+/// What a start does with the values of another diagram, or of an edited one. Those of the same diagram by another
+/// engine are carried over whatever it is.
 enum class MismatchPolicy : std::uint8_t {
   refuse,  ///< does not start
   cold,    ///< puts the files aside and starts without them
@@ -117,8 +118,8 @@ struct RetainChecks {
 /// Reads both slots and says how to start; changes nothing.
 [[nodiscard]] Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy policy,
                                const RetainChecks& checks = {});
-/// Puts aside what the recovery says. Empty, or why it failed.
-[[nodiscard]] std::string put_aside(RetainFiles& files, const Recovery& recovery);
+/// Puts aside what the recovery says, and takes out of it what is. Empty, or why the rest is not.
+std::string put_aside(RetainFiles& files, Recovery& recovery);
 
 /// The values of one program on their way to the disk.
 class RetainImage {
@@ -143,7 +144,8 @@ class RetainImage {
 /// Copies in the cyclic thread, writes in its own.
 class Retainer {
  public:
-  /// As RetainImage says of the program and its state when it begins. The program must outlive it.
+  /// As RetainImage says of the program and its state when it begins. The program must outlive it. What `start` says
+  /// is to be put aside is so before the first state is written.
   Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start,
            std::vector<std::byte> after_reset = {}, std::vector<std::size_t> inputs = {});
   ~Retainer() { finish(); }
@@ -182,6 +184,7 @@ class Retainer {
   RetainImage first_;
   std::atomic<RetainImage*> image_{&first_};  ///< of the program that runs
   std::mutex writing_{};                      ///< held while an image is read; never taken by the cyclic thread
+  Recovery start_;
   std::size_t slot_;
   std::uint64_t sequence_;
   std::atomic<std::uint64_t> written_;

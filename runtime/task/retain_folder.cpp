@@ -8,6 +8,9 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -22,18 +25,26 @@ std::string problem(const std::filesystem::path& path) {
   return path.string() + ": " + std::strerror(errno);
 }
 
-/// Gives a file a second name, the first that is not taken. Empty, or why it failed.
-std::string link_aside(const std::filesystem::path& path) {
-  for (int number = 1;; ++number) {
-    const auto aside = std::filesystem::path(path).concat(".aside" + std::to_string(number));
-    // A link fails where the name is taken; a rename would overwrite what was put aside before.
-    if (link(path.c_str(), aside.c_str()) == 0) {
-      return {};
-    }
-    if (errno != EEXIST) {
-      return problem(aside);
-    }
+bool write_copy(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::ifstream in(from, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  Descriptor file(::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  if (!file.is_open()) {
+    return false;
   }
+  const bool is_whole = !in.bad() && write_all(file.number(), bytes) && fsync(file.number()) == 0;
+  if (!is_whole) {
+    const int reason = errno;
+    (void)unlink(to.c_str());
+    errno = reason;
+  }
+  return is_whole;
+}
+
+/// A slot is never written in place, so a second name keeps its bytes. File systems of memory cards have none.
+bool link_or_copy(const std::filesystem::path& from, const std::filesystem::path& to) {
+  return link(from.c_str(), to.c_str()) == 0 ||
+         ((errno == EPERM || errno == EOPNOTSUPP || errno == EMLINK) && write_copy(from, to));
 }
 
 }  // namespace
@@ -43,15 +54,18 @@ std::filesystem::path RetainFolder::path_of(std::size_t slot) const {
 }
 
 void RetainFolder::open() {
-  std::error_code problem;  // the next call says what is wrong
-  std::filesystem::create_directories(folder_, problem);
-  if (is_want_of_room(problem.value())) {
+  std::error_code missing;
+  std::filesystem::create_directories(folder_, missing);
+  if (is_want_of_room(missing.value()) || missing == std::errc::read_only_file_system) {
     return;  // nothing can have been retained there; each state that is written tries again
   }
   Descriptor held(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!held.is_open() || faccessat(AT_FDCWD, folder_.c_str(), W_OK | X_OK, AT_EACCESS) != 0 ||
-      flock(held.number(), LOCK_EX | LOCK_NB) != 0) {
-    throw std::system_error(errno, std::generic_category(), folder_.string());
+  // What a disk that is read-only since an error holds, is gone on from.
+  const auto is_writable = [&] {
+    return faccessat(AT_FDCWD, folder_.c_str(), W_OK | X_OK, AT_EACCESS) == 0 || errno == EROFS;
+  };
+  if (!held.is_open() || !is_writable() || flock(held.number(), LOCK_EX | LOCK_NB) != 0) {
+    throw std::system_error(missing ? missing.value() : errno, std::generic_category(), folder_.string());
   }
   held_ = std::move(held);
 }
@@ -108,16 +122,24 @@ std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> byt
 }
 
 std::string RetainFolder::put_aside(std::size_t slot) {
-  std::string failed = link_aside(path_of(slot));
+  std::string failed = copy_aside(slot);
   if (failed.empty() && unlink(path_of(slot).c_str()) != 0) {
     failed = problem(path_of(slot));
   }
   return failed;
 }
 
-/// A slot is never written in place, so a second name keeps its bytes.
 std::string RetainFolder::copy_aside(std::size_t slot) {
-  return link_aside(path_of(slot));
+  for (int number = 1;; ++number) {
+    const auto aside = std::filesystem::path(path_of(slot)).concat(".aside" + std::to_string(number));
+    // Both fail where the name is taken; a rename would overwrite what was put aside before.
+    if (link_or_copy(path_of(slot), aside)) {
+      return {};
+    }
+    if (errno != EEXIST) {
+      return problem(aside);
+    }
+  }
 }
 
 }  // namespace hysteron::runtime

@@ -23,6 +23,7 @@ Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments a
       attachments_(attachments),
       door_(program, settings.inputs, settings.outputs, settings.field_points),
       safe_(settings.outputs, static_cast<double>(program.shape().period) * 1e-9),
+      first_sound_(program),
       watchdog_(settings.watchdog),
       load_(program.shape().period, settings.most_load),
       field_counts_(settings.field_points.size()),
@@ -92,6 +93,9 @@ bool Task::cycle(const CycleMoment& moment) noexcept {
   if (attachments_.trace != nullptr && !tripped_) {
     attachments_.trace->step(moment.number, moment.period, status_.fault, inputs_, computed_, safe_.values());
   }
+  if (!tripped_) {
+    keep_sound();
+  }
   return written;
 }
 
@@ -107,8 +111,17 @@ void Task::follow_change(std::uint64_t cycle) noexcept {
   if (attachments_.retainer != nullptr) {
     attachments_.retainer->change(*change->to->retained);
   }
+  sound_ = change->to->sound == nullptr ? &first_sound_ : change->to->sound.get();
+  sound_->begin_with(change->into);
   has_changed_ = true;
   attachments_.changes->conclude();
+}
+
+void Task::keep_sound() noexcept {
+  const bool are_numbers = std::ranges::all_of(computed_, [](double value) { return std::isfinite(value); });
+  if (sound_->follow(*program_, are_numbers) && attachments_.trace != nullptr) {
+    attachments_.trace->was_restored();
+  }
 }
 
 void Task::take_orders() noexcept {
@@ -144,6 +157,7 @@ void Task::take_orders() noexcept {
     watchdog_ = Watchdog(settings_.watchdog);
     end_forces();
     program_->reset();
+    sound_->begin_with(running());
     if (attachments_.trace != nullptr) {
       attachments_.trace->was_reset();
     }
@@ -264,6 +278,7 @@ void Task::count_writes() noexcept {
   status_.history = attachments_.history == nullptr ? KeptCount{} : attachments_.history->read();
   status_.mqtt = attachments_.mqtt == nullptr ? KeptCount{} : attachments_.mqtt->read();
   status_.tls_fault = tls_fault_.load(std::memory_order_relaxed);
+  status_.tls_days = tls_days_.load(std::memory_order_relaxed);
   if (attachments_.changes != nullptr) {
     status_.version = attachments_.changes->version_number();
     status_.last_change = static_cast<std::uint8_t>(attachments_.changes->outcome());

@@ -18,6 +18,7 @@
 #include "runtime/task/load.hpp"
 #include "runtime/task/retain.hpp"
 #include "runtime/task/safe_outputs.hpp"
+#include "runtime/task/sound_state.hpp"
 #include "runtime/task/step_program.hpp"
 #include "runtime/task/task_door.hpp"
 #include "runtime/task/trace.hpp"
@@ -68,6 +69,8 @@ class Task final : private CycleBody {
   /// From a thread beside the cyclic one: what keeps clients of TLS away, as task.tls_fault says it. No fault of the
   /// task: the control goes on.
   void tls_fault(std::uint8_t fault) noexcept { tls_fault_.store(fault, std::memory_order_relaxed); }
+  /// The same of how many days its certificate still counts.
+  void tls_days(std::uint16_t days) noexcept { tls_days_.store(days, std::memory_order_relaxed); }
   /// Not while it runs; then, points() of the door say the same.
   [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
   /// After run(): what ended it, or what was wrong at its end; stop where nothing was.
@@ -90,6 +93,9 @@ class Task final : private CycleBody {
 
   void take_orders() noexcept;
   void follow_change(std::uint64_t cycle) noexcept;
+  /// After a step, once it is written and traced: a state with a number that is not finite would stay so, and the
+  /// outputs safe.
+  void keep_sound() noexcept;
   [[nodiscard]] Fault read_inputs() noexcept;
   [[nodiscard]] bool write_outputs() noexcept;
   void beat() noexcept { beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed); }
@@ -108,6 +114,8 @@ class Task final : private CycleBody {
   TaskAttachments attachments_;
   TaskDoor door_;
   SafeOutputs safe_;
+  SoundState first_sound_;
+  SoundState* sound_ = &first_sound_;  ///< of the version that runs
   Watchdog watchdog_;
   LoadWatch load_;
   LoopStatistics statistics_{};
@@ -133,6 +141,7 @@ class Task final : private CycleBody {
   std::atomic<bool> client_was_lost_{false};  ///< and no reset came since; only where one is asked for
   std::atomic<bool> guard_is_lost_{false};
   std::atomic<std::uint8_t> tls_fault_{0};
+  std::atomic<std::uint16_t> tls_days_{no_certificate};
   bool tripped_ = false;
   bool guard_took_over_ = false;
 };

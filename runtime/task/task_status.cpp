@@ -62,7 +62,7 @@ constexpr std::array statuses{
     Status{"task.shortages", PointType::uint16, "1",
            "what is tried again while the control goes on, by bits: 1 Modbus has no address yet, 2 nor has the page, "
            "4 the serial line of the server, 8 a device never answered, 16 TLS, 32 MQTT, 64 history, 128 trace, 256 "
-           "retained values, 512 the lock file of the registers",
+           "retained values, 512 the lock file of the registers, 1024 no socket for online changes",
            false, true},
     Status{"task.forced", PointType::uint16, "1", "inputs that the live page forces", false, true},
     Status{"task.load", PointType::uint16, "%",
@@ -70,6 +70,8 @@ constexpr std::array statuses{
     Status{"task.held_back", PointType::uint64, "1",
            "times that low, high or slew kept an output from what the diagram gives, each output once a cycle", true,
            true},
+    Status{"task.tls_days", PointType::uint16, "1",
+           "whole days until the certificate of the server ends, 0 where it has; 65535 without TLS", false, true},
 };
 static_assert(statuses.size() == status_count);
 
@@ -150,6 +152,7 @@ std::array<double, status_count> status_values(const TaskStatus& status, const L
       static_cast<double>(status.forced),
       std::round(100.0 * status.load),
       static_cast<double>(status.held_back),
+      static_cast<double>(status.tls_days),
   };
 }
 

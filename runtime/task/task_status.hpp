@@ -14,6 +14,9 @@
 
 namespace hysteron::runtime {
 
+/// In place of the days that a certificate counts.
+inline constexpr std::uint16_t no_certificate = 65'535;
+
 enum class TaskState : std::uint8_t { starting, running, faulted, stopped };
 
 /// What a task says of itself once a cycle.
@@ -30,7 +33,8 @@ struct TaskStatus {
   KeptCount history{};
   KeptCount mqtt{};
   std::uint8_t tls_fault = 0;
-  std::size_t absent = 0;  ///< devices
+  std::uint16_t tls_days = no_certificate;  ///< until the server's certificate ends
+  std::size_t absent = 0;                   ///< devices
   bool trace_is_cut = false;
   bool retain_fails = false;
   std::uint64_t version = 1;     ///< of the diagram, since the start
@@ -47,7 +51,7 @@ struct TaskStatus {
 /// The same as points, in the order of their values.
 [[nodiscard]] std::vector<Point> status_points();
 
-inline constexpr std::size_t status_count = 34;
+inline constexpr std::size_t status_count = 35;
 /// `high_lateness`: that of 99.99 % of the cycles; `shortages`: those that servers tell, as bits.
 [[nodiscard]] std::array<double, status_count> status_values(const TaskStatus& status, const LoopStatistics& statistics,
                                                              std::int64_t high_lateness,

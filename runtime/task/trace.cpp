@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <limits>
 #include <system_error>
-
-#include "support/atomic_file.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -152,7 +149,7 @@ Trace::Trace(const TraceSettings& settings, const StepProgram& program)
                                     : std::numeric_limits<std::uint64_t>::max()),
       waits_(settings.waits),
       file_bytes_(settings.file_bytes) {
-  begin_first(settings.file);
+  begin_first();
   writer_ = std::thread([this] {
     while (!stop_.load(std::memory_order_relaxed)) {
       write_out(false);
@@ -162,19 +159,15 @@ Trace::Trace(const TraceSettings& settings, const StepProgram& program)
   });
 }
 
-/// A full disk keeps no task from starting: another file is tried later, as where a disk fills meanwhile.
-void Trace::begin_first(const std::filesystem::path& file) {
+/// A disk that takes nothing keeps no task from starting: another file is tried later, as where a disk fills meanwhile.
+void Trace::begin_first() {
   const std::size_t written = file_.write(head_);
   if (written == head_.size()) {
     file_.flush();
     return;
   }
-  const int reason = errno;
   file_.take_back(written);
   file_.give_back();
-  if (!is_want_of_room(reason)) {
-    throw std::system_error(reason, std::generic_category(), file.string());
-  }
   cut(0);
 }
 

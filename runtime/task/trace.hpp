@@ -96,8 +96,8 @@ struct TraceProgram {
 
 class Trace {
  public:
-  /// Throws std::system_error where the file cannot be opened or its head not be written, as TraceOutput does. Where
-  /// the disk is full, it is cut from the begin.
+  /// Throws std::system_error where no trace can ever be at that name, as TraceOutput does. Where it cannot be begun
+  /// for another reason, it is cut from the begin.
   Trace(const TraceSettings& settings, const StepProgram& program);
   ~Trace() { finish(); }
   Trace(const Trace&) = delete;
@@ -107,6 +107,8 @@ class Trace {
   void before_step(std::uint64_t number, const StepProgram& program) noexcept;
   void parameters_changed(const StepProgram& program) noexcept;
   void was_reset() noexcept;
+  /// The next step begins with another state than the one before ended with.
+  void was_restored() noexcept { needs_state_ = true; }
   // After the step:
   /// That step, which step() tells next, was of another program, and began with these bytes as its state. It begins
   /// another file. What stood in `next` is exchanged for what is no longer needed.
@@ -128,7 +130,7 @@ class Trace {
  private:
   bool push(TraceKind kind, std::span<const std::span<const std::byte>> contents) noexcept;
   void push_state(std::uint64_t number, const StepProgram& program) noexcept;
-  void begin_first(const std::filesystem::path& file);
+  void begin_first();
   void write_out(bool last);
   void write_records(std::string_view records);
   /// Records up to the next state, or from one up to the next.

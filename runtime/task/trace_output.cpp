@@ -79,6 +79,13 @@ bool holds_no_step(const std::filesystem::path& file) {
   return in.eof();
 }
 
+/// What stands at the name cannot be a trace, or is that of another task. All else may pass, as a folder on a disk that
+/// is not there yet.
+bool stays(int reason) {
+  return reason == EAGAIN || reason == ENXIO || reason == EISDIR || reason == ENOTDIR || reason == ELOOP ||
+         reason == ENAMETOOLONG || reason == ENOTEMPTY || reason == EEXIST;
+}
+
 /// Renames FILE to FILE.1, FILE.1 to FILE.2, up to FILE.kept; what had that name is gone. False where FILE cannot be.
 bool shift(const std::filesystem::path& file, std::size_t kept) {
   std::size_t last = 1;
@@ -102,7 +109,7 @@ TraceOutput::TraceOutput(std::filesystem::path file, std::size_t kept)
   try {
     open_next();
   } catch (const std::system_error& failed) {
-    if (!is_want_of_room(failed.code().value())) {
+    if (stays(failed.code().value())) {
       throw;
     }
     problem_ = failed.what();
@@ -170,7 +177,7 @@ TraceOutput::~TraceOutput() {
 std::size_t TraceOutput::write(std::string_view bytes) {
   std::size_t done = 0;
   if (descriptor_ < 0) {
-    errno = ENOSPC;  // it has not been begun for want of room
+    errno = ENOSPC;  // it has not been begun, as on a disk without room
     return done;
   }
   while (done < bytes.size()) {

@@ -18,8 +18,8 @@ class TraceOutput {
  public:
   /// What stands there is moved to previous_trace(file), where it has any bytes, and the others on by one: the one
   /// numbered `kept`, at least 1, goes. A trace without a step is written over instead. Throws std::system_error where
-  /// it cannot be; std::errc::resource_unavailable_try_again where another process writes it. Where the disk is full,
-  /// it is not open.
+  /// something is in the way that is no file; std::errc::resource_unavailable_try_again where another process writes
+  /// it. Where it cannot be for another reason, it is not open.
   explicit TraceOutput(std::filesystem::path file, std::size_t kept = 1);
   ~TraceOutput();
   TraceOutput(const TraceOutput&) = delete;

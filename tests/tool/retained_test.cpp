@@ -121,16 +121,32 @@ TEST(Retained, AnEditKeepsWhatIsStillTheSameAndSaysWhatIsNot) {
 TEST(Retained, AnotherEngineIsNoOtherDiagram) {
   const test::Workbench bench;
   bench.write("plant.st", retained_plant);
-  bench.write(
-      "RUN.toml",
-      "[outputs.Y]\nsafe = 0.0\n[outputs.SLOW]\nsafe = 0.0\n[outputs.N]\nsafe = 0.0\n[retain]\nfolder = \"kept\"\n");
-  for (const char* const engine : {"interpreter", "compiled", "interpreter"}) {
-    const auto outcome =
-        bench.shell(std::string("hysteron serve plant.st --config RUN.toml --virtual --cycles 50 --engine ") + engine);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.err, "");
-    EXPECT_THAT(outcome.out, Not(HasSubstr("another version")));
+  bench.write("p.toml", "[parameters.HYST]\nC1 = 1.25\n");
+  const std::string serve = "hysteron serve plant.st --config RUN.toml --virtual --cycles 50 --engine ";
+  for (const std::string mismatch : {"carry", "cold", "refuse"}) {
+    bench.write(
+        "RUN.toml",
+        "[outputs.Y]\nsafe = 0.0\n[outputs.SLOW]\nsafe = 0.0\n[outputs.N]\nsafe = 0.0\n[retain]\nfolder = \"kept_" +
+            mismatch + "\"\nmismatch = \"" + mismatch + "\"\n");
+    ASSERT_EQ(bench.shell(serve + "compiled --params p.toml").code, 0);
+    for (const char* const engine : {"interpreter", "compiled", "interpreter"}) {
+      const auto outcome = bench.shell(serve + engine);
+      EXPECT_EQ(outcome.code, 0) << outcome.err;
+      EXPECT_EQ(outcome.err, "");
+      EXPECT_THAT(outcome.out, HasSubstr(" with 1 parameter as retained and not as given: HYST.C1 ("));
+      EXPECT_THAT(outcome.out, Not(HasSubstr("another version")));
+    }
+    EXPECT_EQ(bench.shell("ls kept_" + mismatch).out, "retain_a\nretain_b\n") << "nothing is put aside";
   }
+}
+
+/// Folders that are none get the mend of that.
+TEST(Retained, AFileIsNoFolder) {
+  const test::Workbench bench;
+  bench.write("plant.st", retained_plant);
+  const auto outcome = bench.shell("hysteron retained plant.st");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("Not a directory\nmend: name the folder that stands at `folder`"));
 }
 
 /// What was tuned at the machine goes back into the project, and the other way round.

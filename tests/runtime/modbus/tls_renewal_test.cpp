@@ -53,6 +53,18 @@ class Renewal : public ::testing::Test {
   std::optional<TlsRenewal> renewal_;
 };
 
+/// For an alarm of the plant's own screen, which knows no log.
+TEST_F(Renewal, TheDaysThatAreLeftAreCounted) {
+  serve_for(40);
+  EXPECT_EQ(look().days, 40);
+  EXPECT_EQ(look(31).days, 9);
+  EXPECT_EQ(look(40).days, 0) << "some minutes of its last day";
+  EXPECT_EQ(look(400).days, 0) << "it has ended";
+  serve_for(36'000);
+  EXPECT_EQ(look().days, 36'000);
+  EXPECT_EQ(look(-50'000).days, TlsRenewal::most_days) << "a clock at its beginning";
+}
+
 TEST_F(Renewal, NothingIsSaidOfFilesThatRestAndOfACertificateThatIsSound) {
   serve_for(400);
   for (int i = 0; i < 5; ++i) {

@@ -44,7 +44,7 @@ class Integrators final : public StepProgram {
     }
   }
   [[nodiscard]] const ProgramShape& shape() const noexcept override { return shape_; }
-  void reset() noexcept override { state_.assign(state_.size(), 0.0); }
+  void reset() noexcept override { state_.assign(state_.size(), resets_to); }
   void step(std::span<const double> inputs, std::span<double> outputs) noexcept override {
     outputs[0] = 0.0;
     for (std::size_t i = 0; i < gains_.size(); ++i) {
@@ -72,6 +72,7 @@ class Integrators final : public StepProgram {
 
   ProgramShape& mutable_shape() { return shape_; }
   std::function<void()> in_step{};
+  double resets_to = 0.0;
 
  private:
   ProgramShape shape_;

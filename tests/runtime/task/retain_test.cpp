@@ -1,22 +1,29 @@
 // No damage to a slot is taken for a value, and none costs more than the newest slot.
 #include "runtime/task/retain.hpp"
 
+#include <fcntl.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sched.h>
-#include <sys/mount.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include <linux/fs.h>
+#include <sys/ioctl.h>
 
+#include <filesystem>
 #include <map>
 #include <random>
+#include <string>
 #include <system_error>
 
+#include "support/descriptor.hpp"
+#include "tests/runtime/task/accumulator.hpp"
 #include "tests/runtime/task/retain_kill.hpp"
-#include "tests/support/exit_code.hpp"
+#include "tests/support/own_disk.hpp"
 #include "tests/support/scratch_folder.hpp"
+#include "tests/support/soon.hpp"
 
 namespace hysteron::runtime {
 namespace {
+
+using testing::HasSubstr;
 
 RetainedValues some_values(std::uint64_t sequence) {
   return {.sequence = sequence,
@@ -39,10 +46,16 @@ class MemoryFiles final : public RetainFiles {
     return {};
   }
   std::string copy_aside(std::size_t slot) override {
+    if (full) {
+      return "no space";
+    }
     aside.push_back(slots[slot]);
     return {};
   }
   std::string put_aside(std::size_t slot) override {
+    if (full) {
+      return "no space";
+    }
     aside.push_back(slots[slot]);
     slots.erase(slot);
     return {};
@@ -122,10 +135,9 @@ TEST(Retain, AnotherLayoutIsRefusedOrPutAside) {
   EXPECT_EQ(recover(files, "other", MismatchPolicy::refuse).refused, "");  // a first start
   files.slots[0] = encode_slot(some_values(4));
   const auto kept = files.slots[0];
-  EXPECT_EQ(recover(files, "other", MismatchPolicy::refuse).refused,
-            "The retained values are of another diagram, or of another engine.");
+  EXPECT_EQ(recover(files, "other", MismatchPolicy::refuse).refused, "The retained values are of another diagram.");
   EXPECT_EQ(files.slots[0], kept);
-  const auto cold = recover(files, "other", MismatchPolicy::cold);
+  auto cold = recover(files, "other", MismatchPolicy::cold);
   EXPECT_EQ(cold.refused, "");
   EXPECT_FALSE(cold.values);
   EXPECT_EQ(files.slots[0], kept) << "a start that is refused for another reason changes nothing";
@@ -134,6 +146,24 @@ TEST(Retain, AnotherLayoutIsRefusedOrPutAside) {
   EXPECT_EQ(files.aside[0], kept);
   files.slots[0] = {std::byte{1}};
   EXPECT_EQ(recover(files, "other", MismatchPolicy::refuse).refused, "No retain slot is whole.");
+}
+
+/// The same values lie in other bytes, whatever is to be done with those of another diagram.
+TEST(Retain, AnotherEngineOfTheSameDiagramIsNoOtherDiagram) {
+  MemoryFiles files;
+  auto described = some_values(4);
+  described.layout = "9f3c-interpreter";
+  described.described = "p\tG.A\tLREAL\tum\n";
+  files.slots[0] = encode_slot(described);
+  for (const MismatchPolicy policy : {MismatchPolicy::refuse, MismatchPolicy::cold, MismatchPolicy::carry}) {
+    const auto recovery = recover(files, "9f3c-compiled", policy);
+    ASSERT_TRUE(recovery.values);
+    EXPECT_TRUE(recovery.by_name);
+    EXPECT_FALSE(recovery.aside[0]) << "nothing of it is lost";
+    EXPECT_EQ(recovery.note, "");
+  }
+  EXPECT_NE(recover(files, "9f3c-compiled-float32", MismatchPolicy::refuse).refused, "") << "other numbers";
+  EXPECT_NE(recover(files, "9f3d-compiled", MismatchPolicy::refuse).refused, "");
 }
 
 TEST(Retain, ParametersThatTheProgramCannotTakeAreRefusedOrPutAside) {
@@ -155,13 +185,12 @@ TEST(Retain, AnEditedDiagramCarriesWhatHasNames) {
   MemoryFiles files;
   auto described = some_values(4);
   files.slots[0] = encode_slot(described);
-  EXPECT_EQ(recover(files, "other", MismatchPolicy::carry).refused,
-            "The retained values are of another diagram, or of another engine.")
+  EXPECT_EQ(recover(files, "other", MismatchPolicy::carry).refused, "The retained values are of another diagram.")
       << "a file without names";
   described.described = "p\tG.A\tLREAL\tum\n";
   files.slots[0] = encode_slot(described);
   const auto kept = files.slots[0];
-  const auto recovery = recover(files, "other", MismatchPolicy::carry);
+  auto recovery = recover(files, "other", MismatchPolicy::carry);
   EXPECT_EQ(recovery.refused, "");
   EXPECT_TRUE(recovery.by_name);
   ASSERT_TRUE(recovery.values);
@@ -235,54 +264,103 @@ TEST(Retain, KilledAtAnyMomentNothingConfirmedIsLost) {
   EXPECT_GT(last, 0U);
 }
 
-/// On a disk of its own without a file to spare, in another process: 0 where all went as it should, 77 where this
-/// machine lets nobody have one.
-int retain_on_a_full_disk(const std::string& disk) {
-  if (::unshare(CLONE_NEWNS) != 0 && ::unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0) {
-    return 77;
-  }
-  (void)::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr);
-  if (::mount("none", disk.c_str(), "tmpfs", 0, "nr_inodes=1") != 0) {
-    return 77;
-  }
-  RetainFolder files(disk + "/retain");
-  files.open();
-  RetainFolder late(disk + "/retain");
-  late.open();
-  if (files.read(0) || files.write(0, encode_slot(some_values(1))).find("retain") == std::string::npos) {
-    return 1;
-  }
-  if (::mount("none", disk.c_str(), "tmpfs", MS_REMOUNT, "nr_inodes=100") != 0) {
-    return 77;
-  }
-  if (!files.write(0, encode_slot(some_values(2))).empty() || !files.read(0)) {
-    return 2;
-  }
-  // The first of two tasks holds it, however often the other tries.
-  if (late.write(1, encode_slot(some_values(3))).empty() || late.write(1, encode_slot(some_values(3))).empty() ||
-      files.read(1)) {
-    return 4;
-  }
-  try {
+TEST(Retain, AFullDiskKeepsNoFolderFromBeingThereLater) {
+  const hysteron::test::ScratchFolder scratch;
+  const std::string disk = scratch.path();
+  hysteron::test::with_own_disk(disk, "nr_inodes=1", [&] {  // no file to spare
+    RetainFolder files(disk + "/retain");
+    files.open();
+    RetainFolder late(disk + "/retain");
+    late.open();
+    EXPECT_FALSE(files.read(0));
+    EXPECT_THAT(files.write(0, encode_slot(some_values(1))), HasSubstr("retain"));
+    hysteron::test::change_disk(disk, "nr_inodes=100");
+    EXPECT_EQ(files.write(0, encode_slot(some_values(2))), "");
+    EXPECT_TRUE(files.read(0));
+    // The first of two tasks holds it, however often the other tries.
+    EXPECT_NE(late.write(1, encode_slot(some_values(3))), "");
+    EXPECT_NE(late.write(1, encode_slot(some_values(3))), "");
+    EXPECT_FALSE(files.read(1));
     RetainFolder second(disk + "/retain");
-    second.open();
-    return 3;  // it is held by now
-  } catch (const std::system_error&) {
-    return 0;
+    EXPECT_THROW(second.open(), std::system_error) << "it is held by now";
+  });
+}
+
+/// As a disk is after an error: what it holds is gone on from, and kept aside once that can be.
+TEST(Retain, AReadOnlyDiskIsReadAndIsWrittenOnceItCanBe) {
+  const hysteron::test::ScratchFolder scratch;
+  const std::string disk = scratch.path();
+  hysteron::test::with_own_disk(disk, "nr_inodes=100", [&] {
+    {
+      RetainFolder before(disk + "/retain");
+      before.open();
+      auto described = some_values(4);
+      described.described = "p\tG.A\tLREAL\tum\n";
+      EXPECT_EQ(before.write(0, encode_slot(described)), "");
+    }
+    hysteron::test::change_disk(disk, "nr_inodes=100", true);
+    RetainFolder missing(disk + "/other");
+    missing.open();
+    EXPECT_FALSE(missing.read(0));
+    RetainFolder files(disk + "/retain");
+    files.open();
+    Recovery recovery = recover(files, "edited", MismatchPolicy::carry);
+    EXPECT_TRUE(recovery.values);
+    EXPECT_THAT(put_aside(files, recovery), HasSubstr("retain_a.aside1: Read-only file system"));
+    test::Accumulator program;
+    Retainer retainer(files, program, recovery);
+    retainer.offer(program);
+    EXPECT_TRUE(hysteron::test::soon([&] { return !retainer.problem().empty(); }));
+    EXPECT_THAT(retainer.problem(), HasSubstr("retain_a.aside1: Read-only file system"));
+    hysteron::test::change_disk(disk, "nr_inodes=100");
+    retainer.offer(program);
+    EXPECT_TRUE(hysteron::test::soon([&] { return retainer.written() == 5; }));
+    EXPECT_TRUE(std::filesystem::exists(disk + "/retain/retain_a.aside1"));
+    EXPECT_TRUE(std::filesystem::exists(disk + "/retain/retain_b"));
+  });
+}
+
+TEST(Retain, NothingIsWrittenBeforeWhatIsThereIsPutAside) {
+  for (const MismatchPolicy policy : {MismatchPolicy::carry, MismatchPolicy::cold}) {
+    MemoryFiles files;
+    auto described = some_values(4);
+    described.described = "p\tG.A\tLREAL\tum\n";
+    files.slots[0] = encode_slot(described);
+    files.slots[1] = encode_slot(some_values(3));
+    const auto kept = files.slots;
+    Recovery recovery = recover(files, "edited", policy);
+    files.full = true;
+    EXPECT_EQ(put_aside(files, recovery), "no space");
+    test::Accumulator program;
+    Retainer retainer(files, program, recovery);
+    retainer.offer(program);
+    EXPECT_TRUE(hysteron::test::soon([&] { return retainer.failures() == 1; }));
+    EXPECT_EQ(files.slots, kept);
+    files.full = false;
+    retainer.offer(program);
+    retainer.finish();
+    EXPECT_EQ(retainer.written(), 5U);
+    EXPECT_EQ(files.aside.size(), policy == MismatchPolicy::carry ? 1U : 2U);
+    EXPECT_EQ(files.aside[0], kept.at(0));
   }
 }
 
-TEST(Retain, AFullDiskKeepsNoFolderFromBeingThereLater) {
+/// A file system of a memory card gives no second name; nor does one give it to a file that may not be changed.
+TEST(Retain, WhereAFileCanHaveNoSecondNameItIsCopied) {
   const hysteron::test::ScratchFolder scratch;
-  const pid_t child = ::fork();
-  if (child == 0) {
-    ::_exit(retain_on_a_full_disk(scratch.path()));
+  RetainFolder files(scratch / "retain");
+  ASSERT_EQ(files.write(0, encode_slot(some_values(7))), "");
+  const Descriptor slot(::open(files.path_of(0).c_str(), O_RDONLY | O_CLOEXEC));
+  int flags = FS_IMMUTABLE_FL;
+  if (::ioctl(slot.number(), FS_IOC_SETFLAGS, &flags) != 0) {
+    return;  // no file here can be kept from having a second name
   }
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  if (const int code = hysteron::test::exit_code(status); code != 77) {  // this machine lets a process have such a disk
-    EXPECT_EQ(code, 0);
-  }
+  const std::string problem = files.copy_aside(0);
+  flags = 0;
+  EXPECT_EQ(::ioctl(slot.number(), FS_IOC_SETFLAGS, &flags), 0);
+  EXPECT_EQ(problem, "");
+  EXPECT_EQ(hysteron::test::contents_of(files.path_of(0).string() + ".aside1"),
+            hysteron::test::contents_of(files.path_of(0)));
 }
 
 TEST(Retain, FilesPutAsideAreNeverOverwritten) {

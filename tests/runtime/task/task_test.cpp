@@ -366,5 +366,19 @@ TEST(Task, AResetClearsStateAndFaultAndKeepsParameters) {
   EXPECT_EQ(sum, 10.0);  // one step after the reset: the loop counts its cycles from the first start
 }
 
+TEST(Task, TellsHowLongACertificateCounts) {
+  test::Accumulator program;
+  Task task(program, {.loop = {.cycles = 1}, .inputs = {{}}, .outputs = {{}, {}}});
+  const auto days = [&] {
+    VirtualClock clock;
+    const std::atomic<bool> stop{false};
+    (void)task.run(clock, stop);
+    return test::value(task.door(), "task.tls_days");
+  };
+  EXPECT_EQ(days(), 65535.0) << "there is none";
+  task.tls_days(29);
+  EXPECT_EQ(days(), 29.0);
+}
+
 }  // namespace
 }  // namespace hysteron::runtime

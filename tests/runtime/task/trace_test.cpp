@@ -16,6 +16,7 @@
 #include "runtime/task/task.hpp"
 #include "tests/runtime/task/accumulator.hpp"
 #include "tests/support/file_size_limit.hpp"
+#include "tests/support/own_disk.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/support/soon.hpp"
 
@@ -363,11 +364,30 @@ TEST(Trace, AFileThatTakesNoMoreEndsWithAWholeStepAndTheRestIsCounted) {
   EXPECT_TRUE(result.complete);
 }
 
+/// A folder on a disk that is not there yet, or that has become read-only: the task starts, and the trace when it can.
+TEST(Trace, WhatMayPassRefusesNoStart) {
+  const hysteron::test::ScratchFolder scratch;
+  const Accumulator program;
+  const Trace trace({.file = scratch / "later/trace"}, program);
+  EXPECT_TRUE(trace.is_cut());
+  EXPECT_EQ(trace.problem(), (scratch / "later/trace") + ": No such file or directory");
+  const std::string disk = scratch.path();
+  hysteron::test::with_own_disk(disk, "nr_inodes=100", [&] {
+    const auto before = traced_run({.file = disk + "/trace"}, 50);
+    hysteron::test::change_disk(disk, "nr_inodes=100", true);
+    const Trace cut({.file = disk + "/trace"}, program);
+    EXPECT_TRUE(cut.is_cut());
+    EXPECT_EQ(cut.problem(), disk + "/trace: Read-only file system");
+    EXPECT_EQ(hysteron::test::contents_of(disk + "/trace"), before);
+  });
+}
+
 TEST(Trace, AFileThatCannotBeOpenedIsSaid) {
   const Accumulator program;
-  EXPECT_THROW(Trace({.file = "/nowhere/at/all"}, program), std::system_error);
   EXPECT_THROW(Trace({.file = "/dev/full"}, program), std::system_error);
+  EXPECT_THROW(Trace({.file = "/dev/null/trace"}, program), std::system_error);
   const hysteron::test::ScratchFolder scratch;
+  EXPECT_THROW(Trace({.file = scratch.path()}, program), std::system_error);
   scratch.write("trace", "of the run before");
   std::filesystem::create_directories(scratch / "trace.1");
   try {

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <ranges>
+#include <tuple>
 
 #include "codegen/graph/body/body.hpp"
 #include "codegen/graph/call_order.hpp"
@@ -150,21 +151,20 @@ class Reader {
                       {.builder = builder, .report = report, .add_parameter = [](const auto&) { return Wire{}; }});
     for (const bodies::BorderPort& port : body.ports(in_place)) {
       const Variable& variable = definition.block->variables[port.declaration];
+      if (in_place && port.within && definition.by_name.contains(upper(port.name))) {
+        continue;  // the caller names the member itself
+      }
       add_variable(definition, variable, port.name, [&] { return declare_border(variable, port, false); });
-      if (port.role == language::body::Role::InOut && port.assigned) {
-        const auto element = element_of(port.name);
-        const auto& name = definitions_.names.emplace_back(
-            element ? element_name(std::string(element->vector) + "_OUT", element->index) : port.name + "_OUT");
-        add_variable(definition, variable, name, [&] { return declare_border(variable, port, true); });
-        definition.variables.back().field.name = name;
+      if (!port.output.empty()) {
+        add_variable(definition, variable, port.output, [&] { return declare_border(variable, port, true); });
       }
     }
   }
 
   Declared declare_border(const Variable& variable, const bodies::BorderPort& port, bool output) {
-    Declared declared;
-    declared.variable = &variable;
-    declared.field.name = element_of(port.name) ? definitions_.names.emplace_back(port.name) : variable.name.text;
+    Declared declared{.variable = &variable};
+    declared.field.name = definitions_.names.emplace_back(output ? port.output : port.name);
+    declared.port = upper(port.name);
     declared.field.type = bodies::info(port.type).carrier;
     declared.field.preset = port.initial;
     declared.has_preset = true;  // IEC 61131-3: what is not connected has its initial value
@@ -173,8 +173,13 @@ class Reader {
     if (!output || port.role == language::body::Role::Output) {
       check_keys(variable.annotations, output ? Keys(value_keys) : Keys(input_keys));
     }
+    if (port.range && !output) {
+      std::tie(declared.field.minimum, declared.field.maximum) = *port.range;
+    }
     for (const Annotation& annotation : variable.annotations) {
-      annotate(annotation, false, declared);
+      if (!port.within || declared.field.type == Type::Real || language::same_name(annotation.key, "doc")) {
+        annotate(annotation, false, declared);  // those of a structure hold for the numbers in it
+      }
     }
     check_role(variable, declared);
     return declared;

@@ -23,6 +23,7 @@ struct Declared {
   std::uint32_t definition = 0;      ///< UserBlock: which definition
   Rate rate{};                       ///< of an instance: (* @every 4 *)
   const language::Variable* variable = nullptr;
+  std::string port{};  ///< of a sequential body: what the body calls it, in upper case
 };
 
 struct Definition {

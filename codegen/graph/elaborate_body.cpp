@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "codegen/graph/body/body.hpp"
+#include "codegen/graph/body/memory_ranges.hpp"
 #include "codegen/graph/elaborator.hpp"
-#include "codegen/graph/vectors.hpp"
 
 namespace hysteron {
 
@@ -34,23 +34,23 @@ void Elaborator::elaborate_body(const Instance& instance) {
     }
   }
   const auto& library = *source_.bodies;
-  bodies::Body body(library, library.units[definition.block->body],
-                    {.builder = builder_,
-                     .report = report,
-                     .add_parameter = add_parameter,
-                     .path = instance.path,
-                     .rate = instance.rate,
-                     .sample_time_ns = graph_.sample_time_ns * instance.rate.every});
+  const auto& unit = library.units[definition.block->body];
+  bodies::Surroundings around{.builder = builder_,
+                              .report = report,
+                              .add_parameter = add_parameter,
+                              .path = instance.path,
+                              .rate = instance.rate,
+                              .sample_time_ns = graph_.sample_time_ns * instance.rate.every};
+  const bodies::MemoryRanges memory = bodies::memory_ranges(library, unit, around, inputs);
+  around.memory = memory.empty() ? nullptr : &memory;
+  bodies::Body body(library, unit, std::move(around));
   auto results = body.run(inputs);
   levels_.resize(graph_.nodes.size(), instance.level);
   for (std::size_t i = 0; i < definition.variables.size(); ++i) {
     const Declared& declared = definition.variables[i];
     Slot& slot = slots_[instance.first_slot + i];
     if (declared.kind == Declared::Kind::Output) {
-      // The output of a VAR_IN_OUT has a name of its own, behind that of the variable.
-      const auto element = element_of(declared.field.name);
-      const auto name = declared.variable->name.text;
-      const auto found = results.find(upper(element ? element_name(name, element->index) : std::string(name)));
+      const auto found = results.find(declared.port);
       slot.driven = true;
       slot.span = declared.variable->name.span;
       slot.level = instance.level;

@@ -127,6 +127,7 @@ struct TypeSpec {
   std::vector<std::pair<ExpressionId, ExpressionId>> dimensions{};  ///< 0..9, 1..3
   std::vector<Declaration> fields{};                                ///< STRUCT
   std::vector<std::pair<Name, ExpressionId>> values{};              ///< (OFF, ON := 4)
+  Label subrange{};                                                 ///< INT (0..100)
 };
 
 enum class Role : std::uint8_t { Input, Output, InOut, Local, Temporary, Constant };
@@ -150,6 +151,7 @@ struct Unit {
   bool function = false;
   TypeSpec result{};
   std::vector<Declaration> declarations{};  ///< of a block, beside FunctionBlock::variables
+  std::vector<Declaration> externals{};     ///< VAR_EXTERNAL: constants of the file
   Statements statements{};
   Span span{};
 };
@@ -157,8 +159,10 @@ struct Unit {
 /// All that the bodies of a file need.
 struct Library {
   std::vector<TypeDefinition> types{};
+  std::vector<Declaration> globals{};  ///< VAR_GLOBAL CONSTANT
   std::vector<Unit> units{};
   std::vector<Expression> expressions{};
+  bool has_open_loops = false;  ///< a WHILE, a REPEAT, or a FOR whose bounds are no literals
 };
 
 }  // namespace hysteron::language::body

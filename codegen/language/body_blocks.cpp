@@ -19,13 +19,15 @@ class Scan {
   explicit Scan(std::string_view text) : text_(text), lexer_(text, Comments::Annotated, nullptr) { advance(); }
 
   std::vector<TextPart> parts() {
-    collect_functions();
+    collect_names();
     std::vector<TextPart> found;
     while (token_.symbol != Symbol::End) {
       if (token_.keyword == Keyword::FunctionBlock) {
         found.push_back(block());
-      } else if (is("TYPE") || is("FUNCTION")) {
-        found.push_back(unit(is("TYPE") ? TextPart::Kind::Types : TextPart::Kind::Function));
+      } else if (is("TYPE") || is("FUNCTION") || is("VAR_GLOBAL")) {
+        found.push_back(unit(is("TYPE")       ? TextPart::Kind::Types
+                             : is("FUNCTION") ? TextPart::Kind::Function
+                                              : TextPart::Kind::Globals));
       } else {
         advance();
       }
@@ -44,14 +46,14 @@ class Scan {
     token_ = lexer_.next();
   }
 
-  /// Whether the word FUNCTION may stand somewhere: most texts have none, and need not be read for their names.
-  [[nodiscard]] bool may_have_functions() const {
-    constexpr std::string_view word = "FUNCTION";
-    for (std::size_t at = 0; at + word.size() <= text_.size(); ++at) {
-      if ((text_[at] | 0x20) != 'f' || !same_name(text_.substr(at, word.size()), word)) {
+  /// Whether a word may stand somewhere: most texts have no FUNCTION, TYPE or VAR_GLOBAL, and need not be read for
+  /// their names.
+  [[nodiscard]] bool may_have(std::string_view wanted) const {
+    for (std::size_t at = 0; at + wanted.size() <= text_.size(); ++at) {
+      if ((text_[at] | 0x20) != (wanted.front() | 0x20) || !same_name(text_.substr(at, wanted.size()), wanted)) {
         continue;
       }
-      const bool part_of_another = (at > 0 && text_[at - 1] == '_') || text_.substr(at + word.size(), 1) == "_";
+      const bool part_of_another = (at > 0 && text_[at - 1] == '_') || text_.substr(at + wanted.size(), 1) == "_";
       if (!part_of_another) {  // FUNCTION_BLOCK, END_FUNCTION
         return true;
       }
@@ -59,19 +61,31 @@ class Scan {
     return false;
   }
 
-  /// The names of the FUNCTIONs of the text: to call one is to be sequential.
-  void collect_functions() {
-    if (!may_have_functions()) {
+  /// The names of the FUNCTIONs, TYPEs and global constants of the text: to call one, to declare a variable of one or
+  /// to read one is to be sequential.
+  void collect_names() {
+    if (!may_have("FUNCTION") && !may_have("TYPE") && !may_have("VAR_GLOBAL")) {
       return;
     }
     Lexer lexer(text_, Comments::Annotated, nullptr);
-    bool function = false;
+    std::unordered_set<std::string>* names = nullptr;  // of the part that is read
+    bool begins = false;                               // a declaration of it
+    int structures = 0;
     for (Token one = lexer.next(); one.symbol != Symbol::End; one = lexer.next()) {
       const auto text = text_.substr(one.offset, one.length);
-      if (function && one.symbol == Symbol::Identifier) {
-        functions_.insert(upper(text));
+      const auto is_word = [&](std::string_view word) { return one.keyword != Keyword::None && same_name(text, word); };
+      const bool declared = one.symbol == Symbol::Identifier && begins && structures == 0;
+      if (declared && names != nullptr) {
+        names->insert(upper(text));
       }
-      function = one.keyword == Keyword::Unit && same_name(text, "FUNCTION");
+      if (is_word("FUNCTION") || is_word("TYPE") || is_word("VAR_GLOBAL")) {
+        names = is_word("FUNCTION") ? &functions_ : is_word("TYPE") ? &types_ : &globals_;
+      } else if (is_word("END_TYPE") || is_word("END_VAR") || (declared && names == &functions_)) {
+        names = nullptr;
+      }
+      structures += is_word("STRUCT") ? 1 : is_word("END_STRUCT") ? -1 : 0;
+      begins = names != nullptr && (one.symbol == Symbol::Semicolon || one.symbol == Symbol::Comma ||
+                                    (one.keyword != Keyword::None && !is_word("END_STRUCT")));
     }
   }
 
@@ -84,6 +98,7 @@ class Scan {
     bool declares = false;
     bool typed = false;
     bool called = false;
+    std::unordered_set<std::string> own;  // names that it declares
     while (token_.symbol != Symbol::End && token_.keyword != Keyword::EndFunctionBlock &&
            token_.keyword != Keyword::FunctionBlock) {
       declares = token_.keyword == Keyword::EndVar
@@ -92,7 +107,8 @@ class Scan {
                            token_.keyword == Keyword::VarOutput;
       part.sequential = part.sequential || token_.keyword == Keyword::ControlBegin || is("RETURN") || is("VAR_TEMP") ||
                         is("VAR_IN_OUT") || token_.keyword == Keyword::Qualifier || (declares && typed && is_type()) ||
-                        is_time() || (!declares && called && token_.symbol == Symbol::LeftParenthesis);
+                        is_time() || (!declares && called && token_.symbol == Symbol::LeftParenthesis) ||
+                        is("VAR_EXTERNAL") || reads_global(declares, typed, own);
       called = token_.symbol == Symbol::Identifier && !functions_.empty() && functions_.contains(upper(word()));
       typed = token_.symbol == Symbol::Colon;
       advance();
@@ -106,7 +122,9 @@ class Scan {
 
   TextPart unit(TextPart::Kind kind) {
     TextPart part{.kind = kind, .begin = token_.offset};
-    const std::string_view end = kind == TextPart::Kind::Types ? "END_TYPE" : "END_FUNCTION";
+    const std::string_view end = kind == TextPart::Kind::Types      ? "END_TYPE"
+                                 : kind == TextPart::Kind::Function ? "END_FUNCTION"
+                                                                    : "END_VAR";
     while (token_.symbol != Symbol::End && token_.keyword != Keyword::FunctionBlock && !is(end)) {
       advance();
     }
@@ -118,9 +136,31 @@ class Scan {
   }
 
   [[nodiscard]] bool is_type() const {
-    return same_name(word(), "ARRAY")
-               ? !is_vector()
-               : std::ranges::any_of(types_of_bodies, [&](std::string_view type) { return same_name(type, word()); });
+    if (same_name(word(), "ARRAY")) {
+      return !is_vector();
+    }
+    if (token_.symbol == Symbol::Identifier && !types_.empty() && types_.contains(upper(word()))) {
+      return true;
+    }
+    if (is_elementary_type(word())) {  // DINT (0..9)
+      Lexer lexer = lexer_;
+      return lexer.next().symbol == Symbol::LeftParenthesis;
+    }
+    return std::ranges::any_of(types_of_bodies, [&](std::string_view type) { return same_name(type, word()); });
+  }
+  /// Notes what the block declares; whether it names a global constant that it does not declare.
+  [[nodiscard]] bool reads_global(bool declares, bool typed, std::unordered_set<std::string>& own) const {
+    if (globals_.empty() || token_.symbol != Symbol::Identifier) {
+      return false;
+    }
+    const std::string name = upper(word());
+    Lexer lexer = lexer_;
+    const Symbol next = declares && !typed ? lexer.next().symbol : Symbol::End;
+    if (next == Symbol::Colon || next == Symbol::Comma) {
+      own.insert(name);
+      return false;
+    }
+    return globals_.contains(name) && !own.contains(name);
   }
   /// ARRAY[0..3] OF LREAL, which a diagram has, too: one dimension that begins at 0, of one of its four types.
   [[nodiscard]] bool is_vector() const {
@@ -161,6 +201,8 @@ class Scan {
   Token token_{};
   std::uint32_t last_end_ = 0;
   std::unordered_set<std::string> functions_{};
+  std::unordered_set<std::string> types_{};
+  std::unordered_set<std::string> globals_{};
 };
 
 }  // namespace

@@ -1,6 +1,8 @@
 // Declarations of sequential bodies: sections, types and initial values.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "codegen/language/body_parser.hpp"
@@ -9,6 +11,17 @@
 namespace hysteron::language {
 
 using body::Role;
+
+namespace {
+
+/// What a subrange or an enumeration may be kept in.
+bool is_whole_type(std::string_view name) {
+  constexpr std::array<std::string_view, 9> types{"SINT",  "INT",  "DINT", "USINT", "UINT",
+                                                  "UDINT", "BYTE", "WORD", "DWORD"};
+  return std::ranges::any_of(types, [&](std::string_view type) { return same_name(type, name); });
+}
+
+}  // namespace
 
 bool BodyParser::starts_section() const {
   return now().keyword == Keyword::Var || now().keyword == Keyword::VarInput || now().keyword == Keyword::VarOutput ||
@@ -29,7 +42,9 @@ void BodyParser::section(body::Unit& unit, FunctionBlock* block, std::size_t ind
               : is("VAR_IN_OUT") ? Role::InOut
               : is("VAR_TEMP")   ? Role::Temporary
                                  : Role::Local;
-  if (now().keyword == Keyword::RefusedSection && role == Role::Local) {
+  const bool external = is("VAR_EXTERNAL");
+  auto& list = external ? unit.externals : unit.declarations;
+  if (now().keyword == Keyword::RefusedSection && role == Role::Local && !external) {
     reporter_.error(error::refused_section, span_of(now()), fmt::format("{} reaches out of the block.", word(now())),
                     "Hand the variable over as VAR_INPUT, VAR_OUTPUT or VAR_IN_OUT.");
   }
@@ -40,14 +55,14 @@ void BodyParser::section(body::Unit& unit, FunctionBlock* block, std::size_t ind
   }
   while (!is("END_VAR") && !is(Symbol::End) && !starts_section() && now().keyword != Keyword::EndFunctionBlock) {
     const auto begin = now().offset;
-    const auto first = unit.declarations.size();
-    if (!declaration(role, unit.declarations)) {
-      unit.declarations.resize(first);
+    const auto first = list.size();
+    if (!declaration(role, list)) {
+      list.resize(first);
       while (!is("END_VAR") && !is(Symbol::End) && !accept(Symbol::Semicolon)) {
         advance();
       }
     }
-    if (block == nullptr) {
+    if (block == nullptr || external) {
       continue;
     }
     for (std::size_t i = first; i < unit.declarations.size(); ++i) {
@@ -100,26 +115,31 @@ bool BodyParser::declaration(Role role, std::vector<body::Declaration>& list) {
   return expect(Symbol::Semicolon, "`;`");
 }
 
+/// 0..9
+bool BodyParser::bounds(body::Label& one) {
+  one.low = expression();
+  if (one.low == no_expression || !expect(Symbol::Dot, "`..` between the bounds")) {
+    return false;
+  }
+  if (is(Symbol::Number) && word(now()).front() == '.') {  // 0..9 is read as 0, . and .9
+    one.high = number();
+  } else {
+    accept(Symbol::Dot);
+    one.high = expression();
+  }
+  return one.high != no_expression;
+}
+
 bool BodyParser::array_type(body::TypeSpec& spec) {
   if (!expect(Symbol::LeftBracket, "`[` and the bounds")) {
     return false;
   }
   do {
-    body::Label bounds;
-    bounds.low = expression();
-    if (bounds.low == no_expression || !expect(Symbol::Dot, "`..` between the bounds")) {
+    body::Label one;
+    if (!bounds(one)) {
       return false;
     }
-    if (is(Symbol::Number) && word(now()).front() == '.') {
-      bounds.high = number();
-    } else {
-      accept(Symbol::Dot);
-      bounds.high = expression();
-    }
-    if (bounds.high == no_expression) {
-      return false;
-    }
-    spec.dimensions.emplace_back(bounds.low, bounds.high);
+    spec.dimensions.emplace_back(one.low, one.high);
   } while (accept(Symbol::Comma));
   return expect(Symbol::RightBracket, "`]`") && expect("OF") && type(spec);
 }
@@ -171,6 +191,11 @@ bool BodyParser::type(body::TypeSpec& spec) {
   }
   if (!name(spec.name, "a type")) {
     return false;
+  }
+  if (is(Symbol::LeftParenthesis) && is_whole_type(spec.name.text)) {
+    const bool values = ahead().symbol == Symbol::Identifier && ahead(2).symbol != Symbol::Dot;
+    advance();
+    return values ? enumeration(spec) : bounds(spec.subrange) && expect(Symbol::RightParenthesis, "`)`");
   }
   for (const auto* text : {"STRING", "WSTRING", "CHAR", "WCHAR"}) {
     if (same_name(spec.name.text, text)) {
@@ -234,6 +259,35 @@ bool BodyParser::initial(body::Initial& value) {
   }
   value.span = since(begin);
   return right;
+}
+
+void BodyParser::globals() {
+  const auto place = span_of(now());
+  advance();
+  bool constant = false;
+  while (now().keyword == Keyword::Constant || now().keyword == Keyword::Qualifier) {
+    constant = constant || is("CONSTANT");
+    advance();
+  }
+  if (!constant) {
+    reporter_.error(
+        error::refused_section, place, "VAR_GLOBAL reaches out of the block.",
+        "Write VAR_GLOBAL CONSTANT where these are constants; hand a variable over as VAR_INPUT, VAR_OUTPUT or "
+        "VAR_IN_OUT.");
+  }
+  while (!is("END_VAR") && !is(Symbol::End)) {
+    const auto first = library_.globals.size();
+    if (!declaration(Role::Constant, library_.globals)) {
+      library_.globals.resize(first);
+      while (!is("END_VAR") && !is(Symbol::End) && !accept(Symbol::Semicolon)) {
+        advance();
+      }
+    }
+  }
+  if (!accept("END_VAR")) {
+    reporter_.error(error::missing_end, span_of(now()), "This section has no END_VAR.",
+                    "Write END_VAR behind its last declaration.");
+  }
 }
 
 void BodyParser::types() {

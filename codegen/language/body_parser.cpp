@@ -28,9 +28,8 @@ BodyParser::BodyParser(const SourceFile& file, body::Library& library, Reporter&
 
 void BodyParser::advance() {
   last_end_ = now().end();
-  window_[0] = window_[1];
-  window_[1] = window_[2];
-  window_[2] = reporter_.is_full() ? Token{.offset = end_} : lexer_.next();
+  std::shift_left(window_.begin(), window_.end(), 1);
+  window_.back() = reporter_.is_full() ? Token{.offset = end_} : lexer_.next();
 }
 
 bool BodyParser::is(std::string_view keyword) const {
@@ -184,11 +183,15 @@ void BodyParser::rounds(Statements& list) {
   --loops_;
 }
 
-/// `3:` or `A, B:` or `1..4:` begins an arm of a CASE; the only statement with a colon right behind its first words.
+/// `3:` or `A, B:` or `1..4:` or `MODE.AUTO:` begins an arm of a CASE; the only statement with a colon right behind its
+/// first words.
 bool BodyParser::starts_label() const {
   const bool value = is(Symbol::Number) || is(Symbol::Typed) || is(Symbol::Identifier) || is(Symbol::Minus);
   if (is(Symbol::Identifier) && ahead().symbol == Symbol::Dot) {
-    return ahead(2).symbol == Symbol::Dot;
+    const Symbol behind = ahead(3).symbol;
+    return ahead(2).symbol == Symbol::Dot ||
+           (ahead(2).symbol == Symbol::Identifier && (behind == Symbol::Colon || behind == Symbol::Comma ||
+                                                      (behind == Symbol::Dot && ahead(4).symbol == Symbol::Dot)));
   }
   return value && (!is(Symbol::Identifier) || ahead().symbol == Symbol::Colon || ahead().symbol == Symbol::Comma);
 }
@@ -270,6 +273,7 @@ bool BodyParser::end_with(std::string_view closing) {
 }
 
 bool BodyParser::while_statement(body::Loop& node) {
+  library_.has_open_loops = true;
   node.condition = expression();
   if (node.condition == no_expression || !expect("DO")) {
     skip_to("END_WHILE");
@@ -280,6 +284,7 @@ bool BodyParser::while_statement(body::Loop& node) {
 }
 
 bool BodyParser::repeat_statement(body::Loop& node) {
+  library_.has_open_loops = true;
   node.tested_first = false;
   rounds(node.statements);
   if (!expect("UNTIL") || (node.condition = expression()) == no_expression) {
@@ -362,6 +367,10 @@ bool BodyParser::for_statement(body::For& node) {
     skip_to("END_FOR");
     return true;
   }
+  const auto is_literal = [&](ExpressionId id) {
+    return std::holds_alternative<body::Literal>(library_.expressions[id].node);
+  };
+  library_.has_open_loops = library_.has_open_loops || !is_literal(node.from) || !is_literal(node.to);
   rounds(node.statements);
   return end_with("END_FOR");
 }

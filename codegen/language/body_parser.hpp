@@ -23,6 +23,8 @@ class BodyParser {
              std::uint32_t end);
 
   void types();
+  /// VAR_GLOBAL CONSTANT … END_VAR, beside the blocks.
+  void globals();
   body::Unit function();
   /// A FUNCTION_BLOCK; `block` gets its name and variables, `declarations` where each stands.
   body::Unit block(FunctionBlock& block, std::size_t index, std::vector<Declaration>& declarations);
@@ -35,6 +37,7 @@ class BodyParser {
   bool declaration(body::Role role, std::vector<body::Declaration>& list);
   bool type(body::TypeSpec& spec);
   bool array_type(body::TypeSpec& spec);
+  bool bounds(body::Label& one);
   bool enumeration(body::TypeSpec& spec);
   bool structure(body::TypeSpec& spec);
   bool initial(body::Initial& value);
@@ -93,7 +96,7 @@ class BodyParser {
   Reporter& reporter_;
   Lexer lexer_;
   std::uint32_t end_;
-  std::array<Token, 3> window_{};
+  std::array<Token, 5> window_{};
   std::uint32_t last_end_ = 0;
   int depth_ = 0;
   int loops_ = 0;  ///< around the statement that is read

@@ -77,6 +77,8 @@ void Parser::part_with_body(const TextPart& part, body::Library& library) {
   BodyParser reader(file_, library, diagram ? unheard : reporter_, part.begin, part.end);
   if (part.kind == TextPart::Kind::Types) {
     reader.types();
+  } else if (part.kind == TextPart::Kind::Globals) {
+    reader.globals();
   } else if (part.kind == TextPart::Kind::Function) {
     library.units.push_back(reader.function());
   } else if (diagram) {
@@ -102,11 +104,14 @@ void Parser::part_with_body(const TextPart& part, body::Library& library) {
 void Parser::outside() {
   const bool unit = is(Keyword::Unit) || is(Keyword::UnitEnd);
   const bool is_program = unit && same_name(text_of(span_of(now())), "PROGRAM");
+  const bool is_global = is(Keyword::RefusedSection) && same_name(text_of(span_of(now())), "VAR_GLOBAL");
   error(error::outside_function_block, span_of(now()),
         fmt::format("{} stands outside of a FUNCTION_BLOCK.", described(now())),
-        is_program ? "Make it a block with inputs and outputs: FUNCTION_BLOCK … END_FUNCTION_BLOCK."
-        : unit     ? "A diagram file holds FUNCTION_BLOCKs only; move the rest into a file of its own."
-                   : "Move it between FUNCTION_BLOCK and END_FUNCTION_BLOCK, or remove it.");
+        is_global
+            ? "Put its constants between VAR CONSTANT and END_VAR of the block; a sequential body takes them from here."
+        : is_program ? "Make it a block with inputs and outputs: FUNCTION_BLOCK … END_FUNCTION_BLOCK."
+        : unit       ? "A diagram file holds FUNCTION_BLOCKs only; move the rest into a file of its own."
+                     : "Move it between FUNCTION_BLOCK and END_FUNCTION_BLOCK, or remove it.");
   while (!is(Symbol::End) && !is(Keyword::FunctionBlock)) {
     advance();
   }

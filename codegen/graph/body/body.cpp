@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
+#include <optional>
 #include <utility>
 
 #include "codegen/graph/vectors.hpp"
@@ -49,112 +52,160 @@ const Written& Body::written(const Source& source) {
   return found->second;
 }
 
+/// A VAR_EXTERNAL is a constant of the file, or something that this file does not have.
+void Body::check_externals() {
+  for (const syntax::Declaration& one : source_.unit->externals) {
+    const bool known = std::ranges::any_of(types_.library().globals, [&](const syntax::Declaration& global) {
+      return language::same_name(global.name.text, one.name.text);
+    });
+    if (!known) {
+      refuse(error::refused_section, one.name.span,
+             fmt::format("VAR_EXTERNAL '{}' reaches out of the block, and this file has no constant of that name",
+                         one.name.text),
+             "Hand the variable over as VAR_INPUT, VAR_OUTPUT or VAR_IN_OUT; put a constant into VAR_GLOBAL CONSTANT … "
+             "END_VAR of this file.");
+    }
+  }
+}
+
+namespace {
+
+/// How many ports a type is at the border: a structure its members, an array of structures its elements; none where it
+/// is an instance. More than `longest_vector` are as many as these and one.
+std::optional<std::size_t> port_count(const BodyType& type) {
+  constexpr std::size_t too_many = longest_vector + 1;
+  std::size_t count = 1;
+  if (type.kind == BodyType::Kind::Array) {
+    const auto each = port_count(*type.element);
+    const auto length = static_cast<std::size_t>(type.high - type.low + 1);
+    return each ? std::optional(std::min(too_many, *each * std::min(too_many, length))) : std::nullopt;
+  }
+  if (type.kind == BodyType::Kind::Structure) {
+    count = 0;
+    for (const Member& member : type.members) {
+      const auto each = port_count(*member.type);
+      if (!each) {
+        return std::nullopt;
+      }
+      count = std::min(too_many, count + *each);
+    }
+  }
+  const bool instance = type.kind == BodyType::Kind::Block || type.kind == BodyType::Kind::Library;
+  return instance ? std::nullopt : std::optional(count);
+}
+
+/// The ports that a variable is at the border, by name: AXIS_POS of a structure, X[0] of a vector, ZONE_1_TEMP of an
+/// array of structures.
+void each_port(const std::string& name, Place& place, const std::function<void(const std::string&, Place&)>& take) {
+  if (place.leaf != Place::no_leaf) {
+    take(name, place);
+    return;
+  }
+  const BodyType& type = *place.type;
+  const bool vector = type.kind == BodyType::Kind::Array && type.element->kind == BodyType::Kind::Plain;
+  for (std::size_t i = 0; i < place.parts.size(); ++i) {
+    const std::int64_t index = type.low + static_cast<std::int64_t>(i);
+    each_port(vector                               ? element_name(name, index)
+              : type.kind == BodyType::Kind::Array ? flat_element_name(name, index)
+                                                   : name + "_" + std::string(type.members[i].written.text),
+              *place.parts[i], take);
+  }
+}
+
+bool is_at_border(syntax::Role role) {
+  return role == syntax::Role::Input || role == syntax::Role::Output || role == syntax::Role::InOut;
+}
+
+}  // namespace
+
 std::vector<BorderPort> Body::ports(bool in_place) {
   std::vector<BorderPort> list;
   root_ = std::make_unique<Place>();
+  check_externals();
   const auto& declarations = source_.unit->declarations;
   for (std::size_t i = 0; i < declarations.size(); ++i) {
     const syntax::Declaration& one = declarations[i];
-    const bool border =
-        one.role == syntax::Role::Input || one.role == syntax::Role::Output || one.role == syntax::Role::InOut;
     const auto member = types_.members({one});
-    if (!border || member.empty()) {
+    if (!is_at_border(one.role) || member.empty()) {
       continue;
     }
-    const BodyType& type = *member.front().type;
-    if (type.kind == BodyType::Kind::Array && type.element->kind == BodyType::Kind::Plain &&
-        type.high - type.low < longest_vector) {
-      add_elements(list, i, *member.front().type);
-      continue;
-    }
-    if (type.kind != BodyType::Kind::Plain) {
-      if (in_place) {
-        continue;
+    const TypeRef& type = member.front().type;
+    const auto count = port_count(*type);
+    if (!count || *count > longest_vector) {
+      if (!in_place) {
+        refuse(error::refused_in_body, one.name.span,
+               count ? fmt::format("'{}' at the border of the block has more than {} elements", one.name.text,
+                                   longest_vector)
+                     : fmt::format("'{}' at the border of the block is an instance, or has one in it", one.name.text),
+               count
+                   ? "Each is an input or output: use fewer, or call the block from another block of this file."
+                   : "Give it inputs and outputs of plain types, arrays and structures, or call it from another block "
+                     "of this file.");
       }
-      refuse(error::refused_in_body, one.name.span,
-             fmt::format("'{}' at the border of the block is a structure, an instance, or an array of several "
-                         "dimensions or of more than {} elements",
-                         one.name.text, longest_vector),
-             "Give it inputs and outputs of plain types or vectors of these, or call it from another block of this "
-             "file.");
       continue;
     }
-    const auto made = make(member.front().type, std::string(one.name.text), one.name.span, true);
+    const auto made = make(type, std::string(one.name.text), one.name.span, true);
     if (one.initial.given()) {
       set_initial(*made, one.initial);
     }
-    list.push_back(port(i, type, std::string(one.name.text), *made));
+    each_port(std::string(one.name.text), *made,
+              [&](const std::string& name, const Place& place) { list.push_back(port(i, *type, name, place)); });
   }
   return list;
 }
 
-BorderPort Body::port(std::size_t declaration, const BodyType& type, std::string name, const Place& place) {
+BorderPort Body::port(std::size_t declaration, const BodyType& whole, std::string name, const Place& place) {
   const syntax::Declaration& one = source_.unit->declarations[declaration];
+  const BodyType& type = *place.type;
   const double initial = leaves_[place.leaf].initial;
+  std::string output;
+  if (one.role == syntax::Role::InOut && written(source_).names.contains(upper(one.name.text))) {
+    const auto element = element_of(name);
+    output = element ? element_name(std::string(element->vector) + "_OUT", element->index) : name + "_OUT";
+  }
+  const bool plain = whole.kind == BodyType::Kind::Plain ||
+                     (whole.kind == BodyType::Kind::Array && whole.element->kind == BodyType::Kind::Plain);
   return {.name = std::move(name),
           .type = type.plain,
           .role = one.role,
           .initial = type.plain == Plain::Time ? initial / 1000.0 : initial,
           .written = one.name,
           .declaration = declaration,
-          .assigned = written(source_).names.contains(upper(one.name.text))};
-}
-
-/// A vector at the border: a port for each element.
-void Body::add_elements(std::vector<BorderPort>& list, std::size_t declaration, const BodyType& type) {
-  const syntax::Declaration& one = source_.unit->declarations[declaration];
-  const auto made = make(std::make_shared<BodyType>(type), std::string(one.name.text), one.name.span, true);
-  if (one.initial.given()) {
-    set_initial(*made, one.initial);
-  }
-  for (std::size_t i = 0; i < made->parts.size(); ++i) {
-    list.push_back(port(declaration, *type.element,
-                        element_name(one.name.text, type.low + static_cast<std::int64_t>(i)), *made->parts[i]));
-  }
-}
-
-Place* Body::border(std::string_view name) {
-  const auto element = element_of(name);
-  Place* const place = root_->find(element ? upper(element->vector) : std::string(name));
-  if (!element || place == nullptr) {
-    return place;
-  }
-  const std::int64_t at = element->index - place->type->low;
-  return at < 0 || at >= static_cast<std::int64_t>(place->parts.size())
-             ? nullptr
-             : place->parts[static_cast<std::size_t>(at)].get();
+          .output = std::move(output),
+          .within = !plain,
+          .range = type.is_subrange
+                       ? std::optional(std::pair(static_cast<double>(type.low), static_cast<double>(type.high)))
+                       : std::nullopt};
 }
 
 std::map<std::string, Wire> Body::run(const std::map<std::string, Wire>& inputs) {
+  globals_ = std::make_unique<Place>();
+  make_members(*globals_, types_.members(types_.library().globals), false);
   root_ = std::make_unique<Place>();
   make_members(*root_, types_.members(source_.unit->declarations), true);
   scope_ = root_.get();
-  for (const auto& [name, wire] : inputs) {
-    const Place* const place = border(name);
-    if (place != nullptr && place->leaf != Place::no_leaf) {
-      computer_.at(path_for(name), leaves_[place->leaf].span);
-      write(place->leaf, computer_.taken(wire, leaves_[place->leaf].type));
+  std::vector<std::pair<std::string, Place*>> outputs;
+  for (std::size_t i = 0; i < root_->members.size(); ++i) {
+    const Member& member = root_->members[i];
+    if (!is_at_border(member.role) || !port_count(*member.type)) {
+      continue;
     }
+    each_port(member.name, *root_->parts[i], [&](const std::string& name, Place& place) {
+      const std::string key = upper(name);
+      if (const auto given = inputs.find(key); given != inputs.end()) {
+        computer_.at(path_for(key), leaves_[place.leaf].span);
+        write(place.leaf, computer_.taken(given->second, leaves_[place.leaf].type));
+      }
+      if (member.role != syntax::Role::Input) {
+        outputs.emplace_back(key, &place);
+      }
+    });
   }
   execute(source_.unit->statements);
   std::map<std::string, Wire> results;
-  for (std::size_t i = 0; i < root_->members.size(); ++i) {
-    const auto role = root_->members[i].role;
-    const Place& place = *root_->parts[i];
-    if (role != syntax::Role::Output && role != syntax::Role::InOut) {
-      continue;
-    }
-    const auto give = [&](const std::string& name, const Place& one) {
-      if (one.leaf != Place::no_leaf) {
-        computer_.at(path_for(name), leaves_[one.leaf].span);
-        results[name] = computer_.given(read(one.leaf));
-      }
-    };
-    give(root_->members[i].name, place);
-    for (std::size_t k = 0;
-         k < place.parts.size() && place.type != nullptr && place.type->kind == BodyType::Kind::Array; ++k) {
-      give(element_name(root_->members[i].name, place.type->low + static_cast<std::int64_t>(k)), *place.parts[k]);
-    }
+  for (const auto& [name, place] : outputs) {
+    computer_.at(path_for(name), leaves_[place->leaf].span);
+    results[name] = computer_.given(read(place->leaf));
   }
   close_cells();
   return results;

@@ -22,6 +22,13 @@
 
 namespace hysteron::bodies {
 
+/// Between which numbers a variable that is memory stays in every step: of its bits, read as a DINT.
+struct MemoryRange {
+  std::int64_t low = 0;
+  std::int64_t high = 0;
+};
+using MemoryRanges = std::map<std::string, MemoryRange>;  ///< by path
+
 /// What a body needs of the graph around it.
 struct Surroundings {
   GraphBuilder& builder;
@@ -29,10 +36,12 @@ struct Surroundings {
   std::function<Wire(Parameter)> add_parameter;  ///< one that may be set from outside
   std::string path{};                            ///< of the instance: "" or ending in a dot
   Rate rate{};
-  std::int64_t sample_time_ns = 0;  ///< of one of its steps; 0: not stated
+  std::int64_t sample_time_ns = 0;       ///< of one of its steps; 0: not stated
+  const MemoryRanges* memory = nullptr;  ///< proved, or to be proved
+  bool proving = false;                  ///< a variable that is not in it keeps its initial value, so far
 };
 
-/// A plain variable at the border of a block.
+/// A plain variable at the border of a block, or a plain one within such a variable: AXIS_POS, X[0].
 struct BorderPort {
   std::string name{};
   Plain type = Plain::Bool;
@@ -40,33 +49,44 @@ struct BorderPort {
   double initial = 0.0;
   language::Name written{};
   std::size_t declaration = 0;  ///< beside Unit::declarations
-  bool assigned = false;        ///< the body writes it
+  std::string output{};         ///< of a VAR_IN_OUT that the body writes: X_OUT, X_OUT[0], AXIS_POS_OUT
+  bool within = false;          ///< a structure
+  std::optional<std::pair<double, double>> range{};  ///< of a subrange
+};
+
+/// A whole number that is memory: where it begins, and what a step leaves in it.
+struct Kept {
+  std::string path{};
+  std::int64_t initial = 0;
+  MemoryRange next{};
+  MemoryRange type{};
 };
 
 class Body {
  public:
   Body(const language::body::Library& library, const language::body::Unit& unit, Surroundings around);
 
-  /// The inputs, outputs and VAR_IN_OUT of the block, of a vector its elements X[0], X[1], …. A structure, or an array
-  /// that is no vector, is reported; `in_place`, left out.
+  /// The inputs, outputs and VAR_IN_OUT of the block: of a vector its elements X[0], X[1], …, of a structure its
+  /// members AXIS_POS, AXIS_SPEED, …. An instance is reported; `in_place`, left out.
   std::vector<BorderPort> ports(bool in_place);
   /// Executes the body: `inputs` by name in upper case. Gives the wires of outputs and VAR_IN_OUT by name.
   std::map<std::string, Wire> run(const std::map<std::string, Wire>& inputs);
+  /// Behind run: the whole numbers that are memory.
+  [[nodiscard]] const std::vector<Kept>& kept() const { return kept_; }
 
  private:
   /// Loops unrolled, calls executed in place: so many statements are a program, not a block.
   static constexpr std::size_t most_statements = 200'000;
 
-  BorderPort port(std::size_t declaration, const BodyType& type, std::string name, const Place& place);
-  void add_elements(std::vector<BorderPort>& list, std::size_t declaration, const BodyType& type);
-  /// The variable of a border by its name in upper case, of a vector an element.
-  Place* border(std::string_view name);
+  BorderPort port(std::size_t declaration, const BodyType& whole, std::string name, const Place& place);
+  void check_externals();
   struct Leaf {
     Plain type = Plain::Bool;
     double initial = 0.0;
     std::string path{};
     language::Span span{};
-    bool memory = true;  ///< keeps its value between steps
+    bool memory = true;     ///< keeps its value between steps
+    bool constant = false;  ///< of the file
     std::optional<Value> cell{};
     std::uint32_t node = 0;  ///< of the cell
   };
@@ -83,12 +103,13 @@ class Body {
     int bit = -1;
   };
 
-  // Places: body_places.cpp.
+  // Places: body_places.cpp, and what is kept: body_memory.cpp.
   std::unique_ptr<Place> make(const TypeRef& type, const std::string& path, language::Span span, bool memory);
   void make_members(Place& place, const std::vector<Member>& members, bool memory);
   void make_pins(Place& place, const std::string& path, language::Span span);
   std::uint32_t make_leaf(Plain type, double initial, const std::string& path, language::Span span, bool memory);
   void set_initial(Place& place, const language::body::Initial& initial);
+  void check_subrange(const Place& place, const Value& value, language::Span span);
   bool constant(language::ExpressionId id, double& value);
   /// A delay of one step, and the number of its node, whose first input is not wired yet.
   std::pair<Value, std::uint32_t> delay(Plain type, double initial, const std::string& name, language::Span span);
@@ -172,6 +193,7 @@ class Body {
   Source source_;  ///< of the statements that are executed now
   Types types_;
   std::unique_ptr<Place> root_{};
+  std::unique_ptr<Place> globals_{};  ///< constants of the file
   Place* scope_ = nullptr;
   std::vector<Leaf> leaves_{};
   State state_{};
@@ -184,9 +206,10 @@ class Body {
   std::map<const language::body::Unit*, Written> written_{};
   std::vector<std::pair<std::uint32_t, language::Span>> open_pins_{};  ///< not given before their block was called
   std::set<const language::body::Loop*> endless_{};                    ///< that were told
-  bool lacks_sample_time_ = false;                                     ///< which was told
-  std::optional<Value> clock_{};                                       ///< what TIME() gives in this step
-  std::optional<Value> steps_{};                                       ///< and CLOCK_STEPS()
+  std::vector<Kept> kept_{};
+  bool lacks_sample_time_ = false;                 ///< which was told
+  std::optional<Value> clock_{};                   ///< what TIME() gives in this step
+  std::optional<Value> steps_{};                   ///< and CLOCK_STEPS()
   std::optional<language::Span> standard_call_{};  ///< within a block of the standard: where it was called
 };
 

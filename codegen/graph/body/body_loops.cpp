@@ -125,15 +125,22 @@ std::optional<Body::Counting> Body::counting(const syntax::For& node, language::
            "Begin at a constant, or count by 1.");
     return std::nullopt;
   }
+  const auto named = [&](language::ExpressionId id) {
+    const auto* access = std::get_if<syntax::Access>(&expression(id).node);
+    return access != nullptr && access->steps.empty() ? std::string(access->name.text) : std::string("N");
+  };
   const double most = count.by == 0.0 ? 0.0 : std::floor((count.last() - count.first()) / count.by) + 1.0;
   if (count.by == 0.0 || most > most_rounds) {
     refuse(error::refused_in_body, span,
            count.by == 0.0 ? std::string("this FOR never ends")
                            : fmt::format("this FOR {} {} rounds, more than {}", count.known() ? "has" : "may have",
                                          most, most_rounds),
-           count.known()      ? "A loop is unrolled: give it fewer rounds."
-           : count.to.known() ? "Bound where it begins by what there can be: FOR I := LIMIT(1, N, 32) TO 32 DO."
-                              : "Bound it by what there can be: FOR I := 1 TO LIMIT(0, N, 32) DO.");
+           count.known() ? "A loop is unrolled: give it fewer rounds."
+           : count.to.known()
+               ? fmt::format("Bound where it begins by what there can be: FOR {} := LIMIT(1, {}, 32) TO … DO.",
+                             node.variable.text, named(node.from))
+               : fmt::format("Bound it by what there can be: FOR {} := … TO LIMIT(0, {}, 32) DO.", node.variable.text,
+                             named(node.to)));
     return std::nullopt;
   }
   return most < 1.0 || holds(count) ? std::optional(count) : std::nullopt;
@@ -339,7 +346,13 @@ void Body::narrow(language::ExpressionId id, bool holds) {
       continue;  // it would be computed a second time
     }
     const Place* const place = scope_->find(language::upper(access->name.text));
-    if (place == nullptr || place->leaf == Place::no_leaf || !state_.values[place->leaf]) {
+    if (place == nullptr || place->leaf == Place::no_leaf) {
+      continue;
+    }
+    if (around_.memory != nullptr && !state_.values[place->leaf]) {
+      state_.values[place->leaf] = leaves_[place->leaf].cell;
+    }
+    if (!state_.values[place->leaf]) {
       continue;
     }
     const Value other = value(first ? test->right : test->left);

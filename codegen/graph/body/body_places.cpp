@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <tuple>
 
 #include "codegen/graph/body/body.hpp"
 #include "support/element_name.hpp"
@@ -50,18 +49,6 @@ Plain plain_of_pin(Type type, bool timer) {
       return Plain::Word;
     default:
       return timer ? Plain::Time : Plain::Lreal;
-  }
-}
-
-std::string_view delay_of(Plain type) {
-  switch (info(type).family) {
-    case Family::Truth:
-      return "HY_DELAY_BOOL";
-    case Family::Number:
-    case Family::Duration:
-      return "HY_DELAY";
-    default:
-      return "HY_DELAY_DINT";
   }
 }
 
@@ -144,10 +131,21 @@ void Body::make_members(Place& place, const std::vector<Member>& members, bool m
     const std::string path = place.path.empty() ? member.name : place.path + (unit ? "." : "_") + member.name;
     const bool again = unit && written(source_).called_again.contains(member.name);
     called_again_ += again ? 1 : 0;
+    const auto first = static_cast<std::ptrdiff_t>(leaves_.size());
     auto part = make(member.type, path, place_of(member.written.span), memory && !fixed);
     called_again_ -= again ? 1 : 0;
+    if (&place == globals_.get()) {
+      std::for_each(leaves_.begin() + first, leaves_.end(), [](Leaf& leaf) { leaf.constant = true; });
+    }
     if (member.initial != nullptr && member.initial->given()) {
       set_initial(*part, *member.initial);
+    } else if (member.type->is_subrange && member.type->start != 0.0 && member.type->initial == nullptr && !fixed &&
+               member.role != syntax::Role::Input && member.role != syntax::Role::InOut) {
+      refuse(error::other_meaning_elsewhere, member.written.span,
+             fmt::format("'{}' begins at {}, the lowest number of its subrange, as the standard has it; in CODESYS and "
+                         "TwinCAT it begins at 0",
+                         member.written.text, member.type->low),
+             fmt::format("Give it its value: := {}.", member.type->low));
     }
     place.parts.push_back(std::move(part));
     place.members.push_back(member);
@@ -186,6 +184,7 @@ void Body::set_initial(Place& place, const syntax::Initial& initial) {
              "Write a literal or an operation on constants.");
     }
     leaf.initial = number;
+    check_subrange(place, given, initial.span);
     if (!leaf.memory && given.valid()) {
       state_.values[place.leaf] = given;
     }
@@ -225,6 +224,19 @@ void Body::set_initial(Place& place, const syntax::Initial& initial) {
   }
 }
 
+/// A constant that a subrange does not have is told; what is known when it runs alone is kept as it is.
+void Body::check_subrange(const Place& place, const Value& value, language::Span span) {
+  double number = 0.0;
+  const bool limited = place.type != nullptr && place.type->is_subrange;
+  if (limited && value.valid() && computer_.constant(value, number) &&
+      (number < static_cast<double>(place.type->low) || number > static_cast<double>(place.type->high))) {
+    refuse(error::type_mismatch, span,
+           fmt::format("'{}' has the subrange {}..{}, which has no {}", place.path, place.type->low, place.type->high,
+                       number),
+           "Write a number within it, or give the variable a wider one.");
+  }
+}
+
 /// Puts variables back to their initial values: those of a function in each call, VAR_TEMP of a block.
 void Body::restart(Place& place) {
   if (place.leaf != Place::no_leaf) {
@@ -238,59 +250,6 @@ void Body::restart(Place& place) {
 bool Body::constant(language::ExpressionId id, double& number) {
   const Value result = value(id);
   return result.valid() && computer_.constant(result, number);
-}
-
-std::pair<Value, std::uint32_t> Body::delay(Plain plain, double initial, const std::string& name, language::Span span) {
-  std::string path = fmt::format("{}{}_LAST", around_.path, name);
-  for (int n = 2; !node_paths_.insert(path).second; ++n) {
-    path = fmt::format("{}{}_LAST_{}", around_.path, name, n);
-  }
-  const BlockType* const type = find_block_type(delay_of(plain));
-  const std::uint32_t number = around_.builder.block(*type, path, around_.rate, span);
-  const Node& node = around_.builder.graph().nodes[number];
-  auto& wires = around_.builder.graph().wires;
-  wires[node.first_wire + 1] = around_.builder.literal(Type::Bool, 0.0);
-  wires[node.first_wire + 2] = computer_.literal(plain, initial).wire;
-  Value last{.wire = {Wire::From::Node, type->outputs[0].type, 0, number}, .type = plain};
-  if (is_integer(plain)) {
-    last.low = info(plain).width == 32 ? lowest(Plain::Dint) : lowest(plain);
-    last.high = std::min(highest(plain), highest(Plain::Dint));
-  }
-  return {last, number};
-}
-
-void Body::feed(std::uint32_t delay, const Value& next) {
-  auto& graph = around_.builder.graph();
-  graph.wires[graph.nodes[delay].first_wire] = next.wire;
-}
-
-Value Body::cell(std::uint32_t leaf) {
-  Leaf& one = leaves_[leaf];
-  if (!one.cell) {
-    std::tie(one.cell, one.node) = delay(one.type, one.initial, one.path, one.span);
-  }
-  return *one.cell;
-}
-
-void Body::close_cells() {
-  for (std::uint32_t leaf = 0; leaf < leaves_.size(); ++leaf) {
-    if (leaves_[leaf].cell) {
-      feed(leaves_[leaf].node, read(leaf));
-    }
-  }
-  for (const auto& [leaf, span] : open_pins_) {
-    if (state_.values[leaf]) {
-      refuse(error::refused_in_body, span,
-             fmt::format("'{}' is assigned behind the call of its block", leaves_[leaf].path),
-             "Assign it before the call.");
-    }
-  }
-}
-
-void Body::write(std::uint32_t leaf, const Value& value) {
-  if (value.valid()) {
-    state_.values[leaf] = value;
-  }
 }
 
 std::optional<Value> Body::named_constant(const syntax::Access& access) {
@@ -309,26 +268,35 @@ std::optional<Value> Body::named_constant(const syntax::Access& access) {
   if (types_.enumerator(access.type, access.name.text, number)) {
     return computer_.literal(Plain::Dint, number, true);
   }
-  for (const syntax::Declaration& one : source_.unit->declarations) {
-    Plain type = Plain::Bool;
-    if (one.role == syntax::Role::Constant && upper(one.name.text) == name && plain_of(one.type.name.text, type) &&
-        one.initial.value != language::no_expression && level_ < 20) {
-      ++level_;
-      const Value result = computer_.assignable(value(one.initial.value), type, name);
-      --level_;
-      return result;
+  const auto among = [&](const std::vector<syntax::Declaration>& declarations) -> std::optional<Value> {
+    for (const syntax::Declaration& one : declarations) {
+      Plain type = Plain::Bool;
+      if (one.role == syntax::Role::Constant && upper(one.name.text) == name && plain_of(one.type.name.text, type) &&
+          one.initial.value != language::no_expression && level_ < 20) {
+        ++level_;
+        const Value result = computer_.assignable(value(one.initial.value), type, name);
+        --level_;
+        return result;
+      }
     }
-  }
-  return std::nullopt;
+    return std::nullopt;
+  };
+  const auto own = among(source_.unit->declarations);
+  return own || source_.library != &types_.library() ? own : among(types_.library().globals);
 }
 
 std::vector<Body::Choice> Body::choices(const syntax::Access& access) {
-  Place* const root = scope_ == nullptr ? nullptr : scope_->find(upper(access.name.text));
+  Place* root = scope_ == nullptr ? nullptr : scope_->find(upper(access.name.text));
+  if (root == nullptr && globals_ != nullptr && source_.library == &types_.library()) {
+    root = globals_->find(upper(access.name.text));
+  }
   if (root == nullptr) {
     // What was declared with a type that was refused has been told.
-    const bool told = std::ranges::any_of(source_.unit->declarations, [&](const syntax::Declaration& one) {
+    const auto is_meant = [&](const syntax::Declaration& one) {
       return language::same_name(one.name.text, access.name.text);
-    });
+    };
+    const bool told = std::ranges::any_of(source_.unit->declarations, is_meant) ||
+                      std::ranges::any_of(source_.unit->externals, is_meant);
     if (!told || scope_ == nullptr) {
       Plain type{};
       const bool is_type = plain_of(access.name.text, type);

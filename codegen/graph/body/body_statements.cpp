@@ -59,6 +59,12 @@ Body::State Body::merged(const Value& condition, State yes, State no) {
     if (!a && !b) {
       continue;
     }
+    if (!a || !b) {  // a condition has narrowed what the cell holds on one side
+      const auto& one_side = a ? a : b;
+      if (leaves_[leaf].cell && one_side->wire == leaves_[leaf].cell->wire) {
+        continue;
+      }
+    }
     const Value first = a ? *a : cell(leaf);
     const Value second = b ? *b : cell(leaf);
     computer_.at(path_for(leaves_[leaf].path), computer_.span());
@@ -202,6 +208,7 @@ void Body::assign(const syntax::Access& access, const Value& value, language::Sp
       kept = truth.valid() ? computer_.fit(computer_.select(truth, set, cleared), type) : Value{};
     } else {
       kept = computer_.assignable(value, type, std::string(access.name.text));
+      check_subrange(*one.place, kept, span);
     }
     if (!kept.valid()) {
       return;

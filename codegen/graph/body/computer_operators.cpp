@@ -194,10 +194,11 @@ std::optional<bool> Computer::decided(Operator op, const Value& left, const Valu
   }
   const bool below = left.high < right.low;
   const bool above = left.low > right.high;
+  const bool same = left.low == right.high && left.high == right.low;  // one number each
   switch (op) {
     case Operator::Equal:
     case Operator::NotEqual:
-      return below || above ? std::optional(op == Operator::NotEqual) : std::nullopt;
+      return below || above || same ? std::optional((op == Operator::Equal) == same) : std::nullopt;
     case Operator::Less:
       return below ? std::optional(true) : left.low >= right.high ? std::optional(false) : std::nullopt;
     case Operator::LessEqual:
@@ -406,9 +407,12 @@ Value Computer::shifted(const Value& value, const Value& places, bool left) {
 Value Computer::rotated(const Value& value, const Value& places, bool left) {
   const int width = info(value.type).width;
   double known = 0.0;
-  if (!constant(places, known)) {
-    return refused(error::refused_in_body, "ROL and ROR take a constant number of places here",
-                   "Write the number, or SHL and SHR, which take a variable one.");
+  if (!constant(places, known)) {  // by as many as the lowest bits of the number say: a word is a ring
+    const Value turns = ranged(apply(Op::IntAnd, {places.wire, whole(width - 1)}), Plain::Dint, 0, width - 1);
+    const Value others = integer(Op::IntSubtract, literal(Plain::Dint, width), turns, Plain::Dint);
+    const Value high = shifted(value, left ? turns : others, true);
+    const Value low = shifted(value, left ? others : turns, false);
+    return fit(bits(Operator::Or, high, low, value.type), value.type);
   }
   const int n = ((static_cast<int>(known) % width) + width) % width;
   const int up = left ? n : width - n;

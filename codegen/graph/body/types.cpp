@@ -158,6 +158,34 @@ TypeRef Types::array(const syntax::TypeSpec& spec) {
   return result;
 }
 
+/// The numbers of its type: what is assigned is neither checked nor limited when it runs. Its first value is the
+/// lowest.
+TypeRef Types::subrange(const syntax::TypeSpec& spec, const TypeRef& base) {
+  auto made = std::make_shared<BodyType>(*base);
+  double low = 0.0;
+  double high = 0.0;
+  const auto span = library_.expressions[spec.subrange.high].span;
+  if (!constant_(spec.subrange.low, low) || !constant_(spec.subrange.high, high)) {
+    report_(error::refused_in_body, span, "the bounds of this subrange are not constant",
+            "Write numbers or constants.");
+    return nullptr;
+  }
+  made->low = static_cast<std::int64_t>(low);
+  made->high = static_cast<std::int64_t>(high);
+  if (made->high < made->low || made->low < lowest(made->plain) || made->high > highest(made->plain)) {
+    report_(error::type_mismatch, span,
+            made->high < made->low
+                ? fmt::format("the upper bound of this subrange, {}, is below the lower one, {}", made->high, made->low)
+                : fmt::format("{} does not hold the subrange {}..{}", info(made->plain).name, made->low, made->high),
+            made->high < made->low ? fmt::format("Write the lower one first: {}..{}.", made->high, made->low)
+                                   : fmt::format("It holds {} to {}.", lowest(made->plain), highest(made->plain)));
+    return nullptr;
+  }
+  made->is_subrange = true;
+  made->start = low;
+  return made;
+}
+
 TypeRef Types::enumeration(const syntax::TypeSpec& spec, std::string_view name) {
   auto made = std::make_shared<BodyType>();
   made->plain = Plain::Dint;
@@ -215,6 +243,9 @@ TypeRef Types::resolve(const syntax::TypeSpec& spec) {
     result = made;
   } else {
     result = named(spec.name);
+    if (result && spec.subrange.low != language::no_expression) {
+      result = subrange(spec, result);
+    }
   }
   --depth_;
   return result;

@@ -68,14 +68,15 @@ struct BodyType {
   enum class Kind : std::uint8_t { Plain, Array, Structure, Block, Library };
   Kind kind = Kind::Plain;
   Plain plain = Plain::Bool;
-  std::int64_t low = 0;  ///< of an array's one dimension; further ones are arrays of arrays
+  std::int64_t low = 0;  ///< of an array's one dimension, further ones are arrays of arrays; or of a subrange
   std::int64_t high = 0;
+  bool is_subrange = false;  ///< INT (0..100)
   TypeRef element{};
   std::vector<Member> members{};                     ///< of a structure or a block of one's own
   Source source{};                                   ///< of a block of one's own
   const hysteron::BlockType* block = nullptr;        ///< of the library
   TypeRef by_clock{};                                ///< of a timer of the standard, of TIMEs: the block of its text
-  double start = 0.0;                                ///< of an enumeration: its first value
+  double start = 0.0;                                ///< of an enumeration its first value, of a subrange the lowest
   const language::body::Initial* initial = nullptr;  ///< of a TYPE with a value of its own
 };
 
@@ -94,6 +95,8 @@ class Types {
   std::vector<Member> members(const std::vector<language::body::Declaration>& declarations);
   /// The FUNCTION or FUNCTION_BLOCK of a name, in the file or of the standard; unit is null where there is none.
   [[nodiscard]] Source find_unit(std::string_view name, bool function) const;
+  /// What the file declares beside its blocks.
+  [[nodiscard]] const language::body::Library& library() const { return library_; }
   /// The value of an enumeration; its type where one is named.
   bool enumerator(std::string_view type, std::string_view name, double& value);
 
@@ -101,6 +104,7 @@ class Types {
   TypeRef named(const language::Name& name);
   TypeRef block(const Source& source);
   TypeRef array(const language::body::TypeSpec& spec);
+  TypeRef subrange(const language::body::TypeSpec& spec, const TypeRef& base);
   TypeRef enumeration(const language::body::TypeSpec& spec, std::string_view name);
   void read_enumerations();
 

@@ -1,0 +1,192 @@
+// What sequential bodies declare: subranges, constants of the file, structures at the border; and the ranges of memory.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "codegen/compile.hpp"
+#include "codegen/interpreter/machine.hpp"
+#include "support/errors.hpp"
+#include "tests/codegen/refusal.hpp"
+
+namespace hysteron::testing {
+namespace {
+
+/// The outputs of the last step, for inputs by row.
+std::vector<double> last_of(const std::string& text, const std::vector<std::vector<double>>& rows) {
+  const Program program = compile_text(text);
+  Machine<double> machine(program, 0.01);
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      machine.set_input(i, row[i]);
+    }
+    machine.step();
+  }
+  std::vector<double> results;
+  for (std::size_t i = 0; i < program.graph.outputs.size(); ++i) {
+    results.push_back(machine.output(i));
+  }
+  return results;
+}
+
+std::vector<std::string> names_of(const auto& ports) {
+  std::vector<std::string> names;
+  for (const auto& one : ports) {
+    names.emplace_back(one.name);
+  }
+  return names;
+}
+
+/// What is said of a text, the first time: its cause.
+std::string said(const std::string& text) {
+  const auto told = refusals(text);
+  return told.empty() ? std::string() : told.front().cause;
+}
+
+TEST(BodyDeclarations, ASubrangeIsItsTypeAndBeginsAtItsLowestNumber) {
+  const std::string text =
+      "TYPE PERCENT : INT (0..100); END_TYPE\n"
+      "FUNCTION_BLOCK F VAR_INPUT X : DINT (-5..5); P : PERCENT; END_VAR\n"
+      "VAR_OUTPUT Y : INT; Z : SINT (3..9); END_VAR\n"
+      "Y := P + 1; IF X > 4 THEN Z := 7; END_IF; END_FUNCTION_BLOCK";
+  EXPECT_EQ(last_of(text, {{0, 41}}), (std::vector<double>{42, 3}));
+  EXPECT_EQ(last_of(text, {{5, 300}}), (std::vector<double>{301, 7})) << "nothing limits a number when it runs";
+  const Program program = compile_text(text);
+  EXPECT_EQ(program.graph.inputs[0].minimum, -5.0);
+  EXPECT_EQ(program.graph.inputs[1].maximum, 100.0);
+  Diagnostics found;
+  check(std::make_shared<const language::SourceFile>(language::parse("t", text, found)), found);
+  ASSERT_EQ(found.all().size(), 1U) << "Z alone has no value of its own, and no 0";
+  EXPECT_EQ(found.all()[0].number, error::other_meaning_elsewhere);
+  EXPECT_EQ(found.all()[0].mend, "Give it its value: := 3.");
+  const auto whole = [](const std::string& statement) {
+    return said("FUNCTION_BLOCK F (* @body *) VAR_OUTPUT Y : INT (1..4) := 2; END_VAR " + statement +
+                " END_FUNCTION_BLOCK");
+  };
+  EXPECT_EQ(whole("Y := 4;"), "");
+  EXPECT_EQ(whole("Y := 5;"), "'Y' has the subrange 1..4, which has no 5");
+  EXPECT_EQ(said("FUNCTION_BLOCK F VAR_OUTPUT Y : INT (4..1); END_VAR Y := 4; END_FUNCTION_BLOCK"),
+            "the upper bound of this subrange, 1, is below the lower one, 4");
+  EXPECT_EQ(said("FUNCTION_BLOCK F VAR_OUTPUT Y : USINT (0..300); END_VAR Y := 4; END_FUNCTION_BLOCK"),
+            "USINT does not hold the subrange 0..300");
+}
+
+/// TwinCAT writes the type before each value; the third edition of the standard a type before the list.
+TEST(BodyDeclarations, AnArmOfACaseNamesAValueWithItsType) {
+  const std::string text =
+      "TYPE MODE : INT (OFF := 0, HAND := 10, AUTO := 20); END_TYPE\n"
+      "FUNCTION_BLOCK F VAR_INPUT M : MODE; END_VAR VAR_OUTPUT Y : INT; END_VAR\n"
+      "CASE M OF MODE.OFF: Y := 1; MODE.HAND, MODE#AUTO: Y := 2; ELSE Y := 3; END_CASE; END_FUNCTION_BLOCK";
+  EXPECT_EQ(last_of(text, {{0}}), (std::vector<double>{1}));
+  EXPECT_EQ(last_of(text, {{10}}), (std::vector<double>{2}));
+  EXPECT_EQ(last_of(text, {{20}}), (std::vector<double>{2}));
+  EXPECT_EQ(last_of(text, {{21}}), (std::vector<double>{3}));
+}
+
+TEST(BodyDeclarations, ConstantsOfTheFileAreConstantsOfEachBlock) {
+  const std::string constants =
+      "VAR_GLOBAL CONSTANT ZONES : INT := 3; GAIN : REAL := 1.5; TWICE : REAL := GAIN * 2.0;\n"
+      "LEVELS : ARRAY[1..3] OF INT := [10, 20, 30]; END_VAR\n";
+  const std::string text =
+      constants +
+      "FUNCTION SCALED : REAL VAR_INPUT X : REAL; END_VAR SCALED := X * TWICE; END_FUNCTION\n"
+      "FUNCTION_BLOCK F VAR_INPUT X : ARRAY[1..ZONES] OF REAL; END_VAR VAR_OUTPUT Y : REAL; N : INT; END_VAR\n"
+      "VAR_EXTERNAL CONSTANT GAIN : REAL; END_VAR VAR I : INT; END_VAR\n"
+      "Y := 0.0; N := 0; FOR I := 1 TO ZONES DO Y := Y + SCALED(X[I]) * GAIN; N := N + LEVELS[I]; END_FOR;\n"
+      "END_FUNCTION_BLOCK";
+  EXPECT_EQ(last_of(text, {{1, 2, 3}}), (std::vector<double>{27, 60}));
+  // One of its own is meant before that of the file.
+  EXPECT_EQ(
+      last_of(constants + "FUNCTION_BLOCK F VAR CONSTANT GAIN : REAL := 7.0; END_VAR VAR_OUTPUT Y : REAL; END_VAR\n"
+                          "Y := GAIN; END_FUNCTION_BLOCK",
+              {{}}),
+      (std::vector<double>{7}));
+  EXPECT_EQ(
+      said(constants + "FUNCTION_BLOCK F VAR_OUTPUT Y : INT; END_VAR LEVELS[1] := 4; Y := ZONES; END_FUNCTION_BLOCK"),
+      "'LEVELS_1' cannot be assigned to");
+  const auto number = [](const std::string& whole) {
+    const auto told = refusals(whole);
+    return told.empty() ? 0 : told.front().number;
+  };
+  EXPECT_EQ(
+      number("VAR_GLOBAL N : INT; END_VAR FUNCTION_BLOCK F VAR_OUTPUT Y : INT; END_VAR Y := N; END_FUNCTION_BLOCK"),
+      error::refused_section);
+  EXPECT_EQ(
+      number("FUNCTION_BLOCK F VAR_OUTPUT Y : INT; END_VAR VAR_EXTERNAL N : INT; END_VAR Y := N; END_FUNCTION_BLOCK"),
+      error::refused_section);
+}
+
+TEST(BodyDeclarations, AStructureAtTheBorderIsItsMembers) {
+  const std::string types =
+      "TYPE AXIS : STRUCT POS : LREAL := 2.0; ON : BOOL; LIMITS : ARRAY[0..1] OF LREAL := [-1.0, 1.0]; END_STRUCT;\n"
+      "PAIR : STRUCT A : AXIS; N : ARRAY[1..2] OF AXIS; END_STRUCT; END_TYPE\n";
+  const std::string block =
+      "FUNCTION_BLOCK MOVE VAR_INPUT TARGET : AXIS; END_VAR VAR_IN_OUT S : AXIS; END_VAR VAR_OUTPUT MOVED : AXIS; "
+      "END_VAR\n"
+      "MOVED := TARGET; MOVED.POS := LIMIT(TARGET.LIMITS[0], TARGET.POS, TARGET.LIMITS[1]); S.POS := S.POS + 1.0;\n"
+      "END_FUNCTION_BLOCK\n";
+  const Program program = compile_text(types + block);
+  EXPECT_EQ(names_of(program.graph.inputs),
+            (std::vector<std::string>{"TARGET_POS", "TARGET_ON", "TARGET_LIMITS[0]", "TARGET_LIMITS[1]", "S_POS",
+                                      "S_ON", "S_LIMITS[0]", "S_LIMITS[1]"}));
+  EXPECT_EQ(names_of(program.graph.outputs),
+            (std::vector<std::string>{"S_POS_OUT", "S_ON_OUT", "S_LIMITS_OUT[0]", "S_LIMITS_OUT[1]", "MOVED_POS",
+                                      "MOVED_ON", "MOVED_LIMITS[0]", "MOVED_LIMITS[1]"}));
+  EXPECT_EQ(program.graph.inputs[0].preset, 2.0);
+  EXPECT_EQ(last_of(types + block, {{5, 1, -3, 3, 7, 0, 8, 9}}), (std::vector<double>{8, 0, 8, 9, 3, 1, -3, 3}));
+  // A diagram wires the members, and a vector in it as a whole; another body names them as the text does.
+  const std::string diagram =
+      "FUNCTION_BLOCK TOP VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; L : ARRAY[0..1] OF LREAL; END_VAR VAR M : "
+      "MOVE; "
+      "END_VAR\nM(TARGET_POS := X, TARGET_LIMITS := [-4.0, 4.0]); Y := M.MOVED_POS; L := M.MOVED_LIMITS; "
+      "END_FUNCTION_BLOCK";
+  EXPECT_EQ(last_of(types + block + diagram, {{9}}), (std::vector<double>{4, -4, 4}));
+  const std::string nested =
+      "FUNCTION_BLOCK N VAR_INPUT P : PAIR; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR M : MOVE; T : AXIS; END_VAR\n"
+      "M(TARGET := P.N[2], S := T); Y := M.MOVED.POS + P.A.POS; END_FUNCTION_BLOCK";
+  const Program inner = compile_text(types + block + nested);
+  EXPECT_EQ(inner.graph.inputs.size(), 12U);
+  EXPECT_EQ(inner.graph.inputs[8].name, "P_N_2_POS");
+  EXPECT_EQ(said(types + "FUNCTION_BLOCK F VAR_INPUT A : AXIS; A_ON : BOOL; END_VAR VAR_OUTPUT Y : BOOL; END_VAR\n"
+                         "Y := A.ON; END_FUNCTION_BLOCK"),
+            "'A_ON' is declared twice");
+  EXPECT_EQ(said("FUNCTION_BLOCK F VAR_INPUT T : TON; END_VAR VAR_OUTPUT Y : INT; END_VAR Y := 1; END_FUNCTION_BLOCK"),
+            "'T' at the border of the block is an instance, or has one in it");
+}
+
+/// A counter that a condition holds back stays where it is held, step after step: its loop ends.
+TEST(BodyDeclarations, MemoryStaysWhereEveryStepLeavesIt) {
+  const auto average = [](const std::string& counting) {
+    return "FUNCTION_BLOCK F VAR_INPUT X : INT; GO : BOOL; END_VAR VAR_OUTPUT Y : INT; END_VAR\n"
+           "VAR CONSTANT N : INT := 4; END_VAR VAR A : ARRAY[1..4] OF INT; C, I : INT; PLACE : INT := 1; END_VAR\n" +
+           counting +
+           "A[PLACE] := X; PLACE := PLACE + 1; IF PLACE > N THEN PLACE := 1; END_IF;\n"
+           "Y := 0; FOR I := 1 TO C DO Y := Y + A[I]; END_FOR; END_FUNCTION_BLOCK";
+  };
+  const std::string held = average("IF C < N THEN C := C + 1; END_IF;\n");
+  EXPECT_EQ(last_of(held, {{1, 0}, {2, 0}, {4, 0}}), (std::vector<double>{7}));
+  EXPECT_EQ(last_of(held, {{1, 0}, {2, 0}, {4, 0}, {8, 0}, {16, 0}, {32, 0}}), (std::vector<double>{60}));
+  EXPECT_EQ(said(average("IF GO THEN C := 0; ELSIF C <> N THEN C := MIN(C + 1, N); END_IF;\n")), "");
+  EXPECT_EQ(said(average("IF GO THEN C := C + 1; END_IF;\n")), "this FOR may have 32767 rounds, more than 10000")
+      << "nothing holds this one";
+  EXPECT_EQ(said(average("IF C < N THEN C := C + X; END_IF;\n")), "this FOR may have 32767 rounds, more than 10000");
+  const auto told = refusals(average("C := X;\n"));
+  ASSERT_FALSE(told.empty());
+  EXPECT_EQ(told.front().mend, "Bound it by what there can be: FOR I := … TO LIMIT(0, C, 32) DO.");
+}
+
+TEST(BodyDeclarations, ALoopOverTheBitsOfAWordEnds) {
+  const std::string text =
+      "FUNCTION_BLOCK F VAR_INPUT W : WORD; N : INT; END_VAR VAR_OUTPUT ONES : INT; TURNED : WORD; END_VAR VAR T : "
+      "WORD; "
+      "END_VAR\nT := W; ONES := 0; WHILE T <> 0 DO IF T.0 THEN ONES := ONES + 1; END_IF; T := SHR(T, 1); END_WHILE;\n"
+      "TURNED := ROL(W, N); END_FUNCTION_BLOCK";
+  EXPECT_EQ(last_of(text, {{0xF001, 4}}), (std::vector<double>{5, 0x001F}));
+  EXPECT_EQ(last_of(text, {{0x8001, 0}}), (std::vector<double>{2, 0x8001}));
+  EXPECT_EQ(last_of(text, {{0x8001, 17}}), (std::vector<double>{2, 0x0003})) << "a word is a ring";
+}
+
+}  // namespace
+}  // namespace hysteron::testing

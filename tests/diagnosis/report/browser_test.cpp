@@ -43,25 +43,6 @@ TEST_F(ReportInBrowser, AHysteresisIsDrawnOverItsInput) {
   EXPECT_THAT(rich.page, HasSubstr("data-empty=\"0\""));
 }
 
-/// A share that stands over a wire ends before the box to which the wire leads.
-TEST_F(ReportInBrowser, SharesDoNotReachIntoBoxes) {
-  Diagnosis found = fixture::rich_diagnosis();
-  found.effects.clear();
-  found.edges = {{.edge = "U", .share = 0.9995}, {.edge = "A.XOUT", .share = 0.9996}};
-  const Program chain = compile_text(
-      "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR A : HY_LAG; B : "
-      "HY_COULOMB_FRICTION; END_VAR A(XIN := U); B(XIN := A.XOUT, V := U); Y := B.XOUT; END_FUNCTION_BLOCK");
-  const Shown tried = shown(report_page(found, chain), R"(
-    const of = selector => [...document.querySelectorAll("svg.diagram " + selector)].map(one => one.getBoundingClientRect());
-    const overlap = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
-    const boxes = of("rect"), shares = of("text.share");
-    document.body.dataset.shares = shares.length;
-    document.body.dataset.overlaps = shares.filter(share => boxes.some(box => overlap(share, box))).length;)");
-  expect_no_fault(tried);
-  EXPECT_THAT(tried.page, HasSubstr("data-shares=\"2\""));
-  EXPECT_THAT(tried.page, HasSubstr("data-overlaps=\"0\""));
-}
-
 TEST_F(ReportInBrowser, EmptyAndRefusedPagesRunWithoutAFault) {
   expect_no_fault(shown(report_page({}, {})));
   expect_no_fault(shown(report_page(fixture::refused_diagnosis(), fixture::rich_program())));

@@ -47,6 +47,14 @@ bool is_candump(std::string_view line) {
          line.substr(close + 2, mark - close).find("can") != std::string_view::npos;
 }
 
+/// `>u:1717408800001:0.1`, and `>u:0.1`
+bool is_teleplot(std::string_view line) {
+  const auto colon = line.find(':');
+  constexpr std::string_view of_number = "0123456789+-.";
+  return line.starts_with('>') && colon != std::string_view::npos && colon > 1 && colon + 1 < line.size() &&
+         of_number.find(line[colon + 1]) != std::string_view::npos;
+}
+
 constexpr auto formats = std::to_array<Format>({
     {"MATLAB", [](std::string_view bytes, std::string_view ending) { return begins(bytes, "MATLAB 7.3 MAT-file") || begins(bytes, "MATLAB 5.0 MAT-file") || is_mat4(bytes, ending); },
      read_mat, ""},
@@ -66,8 +74,9 @@ constexpr auto formats = std::to_array<Format>({
      "export the topic: rostopic echo -b FILE -p /TOPIC > log.csv; or open it in PlotJuggler and export CSV."},
     {"MCAP", [](std::string_view bytes, std::string_view ending) { return begins(bytes, "\x89MCAP0\r\n") || ending == "mcap"; }, nullptr,
      "open it in PlotJuggler or Foxglove and export the signals as CSV."},
-    {"SQLite (ROS 2 bag)", [](std::string_view bytes, std::string_view ending) { return begins(bytes, "SQLite format 3\0"sv) || ending == "db3"; },
-     nullptr, "open it in PlotJuggler and export the signals as CSV."},
+    {"a database of SQLite", [](std::string_view bytes, std::string_view ending) { return begins(bytes, "SQLite format 3\0"sv) || ending == "db3"; },
+     nullptr, "export its rows as CSV. A history of `hysteron serve`: hysteron history FILE --out log.csv; a bag of ROS 2: open it in "
+     "PlotJuggler; another: sqlite3 -header -csv FILE 'SELECT * FROM TABLE' > log.csv."},
     {"Excel workbook", [](std::string_view bytes, std::string_view ending) {
        return ending == "xlsx" || ending == "xlsm" || ending == "ods" || (ending == "xls" && !begins(bytes, "<")) || begins(bytes, "\xD0\xCF\x11\xE0");
      },
@@ -125,6 +134,12 @@ constexpr auto formats = std::to_array<Format>({
      "export the numbers, not the picture, as CSV."},
     {"PDF", [](std::string_view bytes, std::string_view) { return begins(bytes, "%PDF"); }, nullptr,
      "export the numbers as CSV."},
+    {"a dictionary of Python in each line", [](std::string_view bytes, std::string_view) {
+       const auto first = bytes.substr(0, bytes.find('\n'));
+       return begins(first, "{'") && first.find("': ") != std::string_view::npos;
+     },
+     nullptr, "in Python, pandas.DataFrame([ast.literal_eval(line) for line in open(\"log.txt\")]).to_csv(\"log.csv\") writes what is "
+     "read here; or write json.dumps(row) in place of str(row)."},
     {"JSON, an object in each line", [](std::string_view bytes, std::string_view) {
        const auto end = bytes.find('\n');
        const auto first = bytes.find_first_not_of(" \t\r\n");
@@ -145,6 +160,14 @@ constexpr auto formats = std::to_array<Format>({
      nullptr, "save it as a MAT-file: in Octave, save(\"-v7\", \"log.mat\", \"t\", \"u\", \"y\")."},
     {"line protocol of InfluxDB", [](std::string_view bytes, std::string_view) { return is_line_protocol(bytes.substr(0, bytes.find('\n'))); },
      nullptr, "export the signals as CSV: `influx query --raw`, or the CSV of Grafana or of the data explorer."},
+    {"text of Prometheus", [](std::string_view bytes, std::string_view) { return begins(bytes, "# HELP ") || begins(bytes, "# TYPE "); },
+     nullptr, "export the signals as CSV with their times: the CSV of Grafana, for instance."},
+    {"a log of ArduPilot", [](std::string_view bytes, std::string_view) { return begins(bytes, "FMT, ") || begins(bytes, "\xA3\x95\x80"); },
+     nullptr, "write one kind of its messages as CSV: mavlogdump.py --types PIDR --format csv log.bin > log.csv; or open it in PlotJuggler."},
+    {"Teleplot, a signal in each line", [](std::string_view bytes, std::string_view) { return is_teleplot(bytes.substr(0, bytes.find('\n'))); },
+     nullptr, "export the signals as CSV from Teleplot, or print them in one line: t:0.001,u:1.5,y:2.5."},
+    {"YAML", [](std::string_view bytes, std::string_view ending) { return ending == "yaml" || ending == "yml" || begins(bytes, "%YAML"); },
+     nullptr, "in Python, pandas.DataFrame(yaml.safe_load(open(\"log.yaml\"))).to_csv(\"log.csv\") writes what is read here."},
     {"VCD, the value changes of a simulation",
      [](std::string_view bytes, std::string_view ending) {
        return ending == "vcd" || (begins(bytes, "$") && bytes.substr(0, 4000).find("$enddefinitions") != std::string_view::npos);

@@ -14,6 +14,7 @@
 
 #include "records/formats.hpp"
 #include "records/resample.hpp"
+#include "records/scaled_unit.hpp"
 #include "records/statistics.hpp"
 #include "records/table.hpp"
 #include "records/time/row_order.hpp"
@@ -277,6 +278,7 @@ enum class Uneven : std::uint8_t { Refused, Taken };
 
 Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven::Refused) {
   rename(table, options);
+  take_scaled_units(table);
   if (table.source != nullptr) {
     table.source->names = names_of(table);
   }

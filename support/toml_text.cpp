@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <utility>
 
 #include "support/render.hpp"
+#include "support/trimmed.hpp"
 #include "support/utf8.hpp"
 
 namespace hysteron {
@@ -35,22 +38,48 @@ void refuse_deep_keys(const std::string& file, std::string_view text, int number
 struct KnownMistake {
   std::string_view said;  ///< part of what the library says
   std::string_view mend;
+  std::string_view shown{};  ///< an example, where the line itself can be mended
 };
 
 /// What those who come from Structured Text or a spreadsheet write.
 constexpr std::array known_mistakes{
-    KnownMistake{"expected a comment or whitespace, saw ','", "write a decimal point: 0.5."},
+    KnownMistake{"expected a comment or whitespace, saw ','", "write a decimal point", "0.5"},
     KnownMistake{"expected 'true', saw 'T'", "write true in small letters."},
     KnownMistake{"expected 'false', saw 'F'", "write false in small letters."},
-    KnownMistake{"parsing floating-point: expected decimal digit",
-                 "write digits on both sides of the point: 0.5, 5.0."},
+    KnownMistake{"parsing floating-point: expected decimal digit", "write digits on both sides of the point",
+                 "0.5, 5.0"},
     KnownMistake{"could not be interpreted as a value", "write a number that LREAL can hold, up to about 1.8e308."},
     KnownMistake{"not representable in 64 bits",
                  "write a whole number of at most 18 digits, or a real number with a point."},
     KnownMistake{"utf-8", "save the file as UTF-8."},
     KnownMistake{"end-of-file", "complete the last line; the file may have been cut off."},
-    KnownMistake{"saw ':'", "write an equals sign between name and value: C1 = 0.05."},
+    KnownMistake{"saw ':'", "write an equals sign between name and value", "C1 = 0.05"},
 };
+
+/// K = 0,05 → K = 0.05; .5 → 0.5; 5. → 5.0; C1 := 2 and C1: 2 → C1 = 2: the line as it should be, where it holds one
+/// of these. Empty where it does not.
+std::string mended_line(std::string_view line) {
+  line = trimmed(line.substr(0, line.find('#')));
+  const auto is_digit = [&](std::size_t at) { return at < line.size() && line[at] >= '0' && line[at] <= '9'; };
+  const auto sign = line.find_first_of(":=");
+  if (sign == std::string_view::npos || sign == 0 || line.front() == '[') {
+    return {};
+  }
+  const auto value = line.find_first_not_of(":= \t", sign);
+  if (value == std::string_view::npos) {
+    return {};
+  }
+  std::string result = std::string(trimmed(line.substr(0, sign))) + " = ";
+  const bool list = line[value] == '[' || line[value] == '{' || line[value] == '"';
+  for (std::size_t at = value; at < line.size(); ++at) {
+    const bool comma = !list && line[at] == ',' && is_digit(at - 1) && is_digit(at + 1);
+    const bool point = line[at] == '.' && line[value] != '"';
+    result += point && !is_digit(at - 1) && is_digit(at + 1) ? "0" : "";
+    result += comma ? '.' : line[at];
+    result += point && is_digit(at - 1) && !is_digit(at + 1) ? "0" : "";
+  }
+  return result;
+}
 
 InputError translated(const std::string& file, std::string_view text, const TomlKind& kind,
                       const toml::parse_error& said) {
@@ -76,9 +105,15 @@ InputError translated(const std::string& file, std::string_view text, const Toml
   const auto* const known =
       std::find_if(known_mistakes.begin(), known_mistakes.end(),
                    [&](const KnownMistake& mistake) { return description.find(mistake.said) != std::string::npos; });
-  return {kind.no_toml, place, fmt::format("This is no TOML: {}.", reason),
-          known != known_mistakes.end() ? std::string(known->mend)
-                                        : fmt::format("write {}; toml.io has the rules.", kind.looks)};
+  std::string mend = known != known_mistakes.end() ? std::string(known->mend)
+                                                   : fmt::format("write {}; toml.io has the rules.", kind.looks);
+  if (known != known_mistakes.end() && !known->shown.empty()) {
+    Sources sources;
+    sources.put(file, text);
+    const std::string line = mended_line(sources.line(file, place.line).value_or(std::string_view()));
+    mend = fmt::format("{}: {}.", known->mend, line.empty() ? std::string(known->shown) : line);
+  }
+  return {kind.no_toml, place, fmt::format("This is no TOML: {}.", reason), std::move(mend)};
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "support/errors.hpp"
 #include "support/names.hpp"
+#include "support/trimmed.hpp"
 #include "support/wrapped.hpp"
 #include "tool/commands.hpp"
 #include "tool/version.hpp"
@@ -94,20 +95,42 @@ void refuse_empty_arguments(const CLI::App& app, const std::vector<std::string>&
   }
 }
 
+/// `--in is required`: what the option is for stands beside it.
+InputError missing_option(const CLI::App& command, const std::string& full_name, const std::string& text,
+                          const std::string& see) {
+  const std::string name = text.substr(0, text.find(' '));
+  const CLI::Option* const option = command.get_option_no_throw(name);
+  if (option == nullptr || option->get_description().empty()) {
+    return bad_usage(fmt::format("{}: {}.", full_name, text), see);
+  }
+  const auto shown = trimmed(option->get_option_text());
+  const std::string label = option->get_positional() ? std::string(shown.empty() ? std::string_view(name) : shown)
+                            : shown.empty()          ? name
+                                                     : fmt::format("{} {}", name, shown);
+  return bad_usage(fmt::format("{}: {}.", full_name, text),
+                   fmt::format("give {}: {} {}", label, option->get_description(), see));
+}
+
 /// What the library says of a bad command line, as a diagnostic.
 InputError translated(const CLI::App& app, const CLI::ParseError& said) {
   const auto chosen = app.get_subcommands();
   const CLI::App& command = chosen.empty() ? app : *chosen.front();
   const auto full_name = chosen.empty() ? std::string("hysteron") : "hysteron " + command.get_name();
   const auto see = fmt::format("`{} --help` shows its options, with examples.", full_name);
-  if (dynamic_cast<const CLI::ExtrasError*>(&said) != nullptr) {
-    for (const std::string& extra : app.remaining(true)) {
+  const bool is_required = dynamic_cast<const CLI::RequiredError*>(&said) != nullptr;
+  if (is_required || dynamic_cast<const CLI::ExtrasError*>(&said) != nullptr) {
+    for (const std::string& extra : app.remaining(true)) {  // --inn, before the missing --in
       if (extra.starts_with('-') && extra != "-") {
         const auto near = nearest_option(command, extra);
         return bad_usage(fmt::format("{} has no option {}.", full_name, extra),
                          near.empty() ? see : fmt::format("did you mean {}?", near));
       }
     }
+  }
+  if (is_required) {
+    return missing_option(command, full_name, said.what(), see);
+  }
+  if (dynamic_cast<const CLI::ExtrasError*>(&said) != nullptr) {
     return bad_usage(fmt::format("{} does not take the argument {}.", full_name, app.remaining(true).front()), see);
   }
   const std::string text = said.what();

@@ -27,7 +27,7 @@ std::span<const Command> commands() {
       Command{"export", "Exports a fitted axis as a joint of a robot: MuJoCo or URDF.", add_export, Results::Report},
       Command{"library", "Writes the blocks of the library for a PLC, in Structured Text.", add_library,
               Results::Report},
-      Command{"import", "Reads a diagram that was drawn elsewhere, in PLCopen XML.", add_import, Results::Report},
+      Command{"import", "Reads a diagram of another editor: PLCopen XML, or a .TcPOU of TwinCAT.", add_import, Results::Report},
       Command{"test", "Runs the tests beside diagrams, interpreted and as generated code.", add_test,
               Results::Findings},
       Command{"serve", "Runs a diagram as a cyclic task, and serves it over Modbus.", add_serve, Results::Report},

@@ -8,6 +8,7 @@
 #include <span>
 #include <system_error>
 
+#include "diagnosis/effects/set_words.hpp"
 #include "diagnosis/evidence/gap_kinds.hpp"
 #include "diagnosis/report/diagnosis_files.hpp"
 #include "support/errors.hpp"
@@ -133,9 +134,8 @@ std::string diagnosis_text(const Diagnosis& found) {
   if (found.rivals.size() > 1) {
     text += "  not ruled out:\n";
     for (const diagnosis::Rival& rival : found.rivals) {
-      const std::string set = rival.effects.empty() ? "calibration alone"
-                                                    : fmt::format("{} at {}", fmt::join(rival.effects, " + "),
-                                                                  fmt::join(rival.edges, ", "));
+      const std::string set = diagnosis::words_of_set(rival.effects) +
+                              (rival.effects.empty() ? "" : fmt::format(" at {}", fmt::join(rival.edges, ", ")));
       text += fmt::format("    {:<44} {:.2f}\n", set, rival.probability);
     }
   }

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "plots/page.hpp"
 #include "plots/thinned.hpp"
 #include "records/statistics.hpp"
 #include "support/markup.hpp"
 #include "tool/tune_words.hpp"
+#include "tuning/fitted_program.hpp"
+#include "tuning/friction_curves.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -175,6 +178,23 @@ std::vector<Figure> loops_of(const TuneReport& report, std::size_t record) {
   return figures;
 }
 
+/// The force of each friction of the fitted diagram over its velocity.
+std::vector<Figure> frictions_of(const TuneReport& report) {
+  std::vector<Figure> figures;
+  const Experiment& experiment = report.problem.experiments.front();
+  for (FrictionCurve& one : friction_curves(fitted_program(report.problem, report.fit.solution.x), experiment.drive)) {
+    figures.push_back({.title = fmt::format("Force of {} over velocity in {}", one.block, experiment.name),
+                       .panels = {{.x_label = plots::axis_label("velocity", one.velocity_unit),
+                                   .y_label = plots::axis_label("force", one.force_unit),
+                                   .curves = {{.name = "model",
+                                               .x = std::move(one.velocity),
+                                               .y = std::move(one.force),
+                                               .colour = colour_model}}}},
+                       .over_time = false});
+  }
+  return figures;
+}
+
 }  // namespace
 
 std::string tune_page(const TuneReport& report) {
@@ -185,6 +205,9 @@ std::string tune_page(const TuneReport& report) {
     for (const Figure& loop : loops_of(report, record)) {
       body += page.place(loop);
     }
+  }
+  for (const Figure& friction : frictions_of(report)) {
+    body += page.place(friction);
   }
   return page.text("Fit of " + report.problem.program.graph.name, body);
 }

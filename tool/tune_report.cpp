@@ -11,6 +11,7 @@
 #include "codegen/cosimulation/fmu.hpp"
 #include "codegen/interpreter/directions.hpp"
 #include "records/csv.hpp"
+#include "support/rounded_text.hpp"
 #include "tool/tune_page.hpp"
 #include "tool/tune_words.hpp"
 #include "tuning/fit_json.hpp"
@@ -60,6 +61,27 @@ bool stays_at_start(const TuneReport& report) {
       free, [&](const FreeParameter& one) { return report.fit.solution.x[&one - free.data()] == one.start; });
 }
 
+/// Records of which a good part is neither fitted nor tested: intervals of a shorter record, as of a template.
+std::string unused_text(const TuneReport& report) {
+  std::string text;
+  for (const Experiment& experiment : report.problem.experiments) {
+    std::size_t used = 0;
+    for (const auto* const ranges : {&experiment.train, &experiment.test}) {
+      for (const records::RowRange& range : *ranges) {
+        used += range.size();
+      }
+    }
+    const std::size_t samples = experiment.time.size();
+    if (4 * used < 3 * samples) {
+      text += fmt::format(
+          "{} of the {} samples of {} are neither in train nor in test of [tune]: the record goes from {} s to {} s.\n",
+          samples - used, samples, experiment.name, rounded_text(experiment.time.front()),
+          rounded_text(experiment.time.back()));
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string as_text(const TuneReport& report) {
@@ -83,7 +105,7 @@ std::string as_text(const TuneReport& report) {
                                     : fmt::format("  RMSE in test   {:.4g}{}{} ({} samples)\n", score.test, unit,
                                                   share_of(score.test, score.test_range), score.test_samples);
   }
-  text += '\n';
+  text += '\n' + unused_text(report);
   for (const std::string& warning : fit.covariance.warnings) {
     text += warning + '\n';
   }

@@ -1,16 +1,16 @@
 #include "diagnosis/remedy/next_experiment.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "codegen/parameters/apply.hpp"
+#include "diagnosis/effects/set_words.hpp"
 #include "diagnosis/model/parallel.hpp"
 #include "diagnosis/model/projection.hpp"
 #include "diagnosis/remedy/excitations.hpp"
+#include "tuning/fitted_program.hpp"
 #include "tuning/simulation.hpp"
 
 namespace hysteron::diagnosis {
@@ -229,8 +229,18 @@ std::vector<NextExperiment::Resting> resting_of(const Task& task, const Graph& g
 }
 
 std::string words(const Explanation& explanation) {
-  const std::vector<std::string> names = explanation.names();
-  return names.empty() ? "calibration alone" : fmt::format("{}", fmt::join(names, " + "));
+  return words_of_set(explanation.names());
+}
+
+/// Of a single hypothesis: what the experiment is to show.
+std::string shown(const Explanation& only) {
+  return only.names().empty() ? "the fitted parameters" : words(only);
+}
+
+/// Beyond a thousand times the noise nothing is told from anything: the figure is one of rounding.
+std::string times_the_noise(double separation) {
+  return separation > 1000.0 ? std::string("more than 1000 times the noise")
+                             : fmt::format("{:.2g} times the noise", separation);
 }
 
 struct Trial {
@@ -243,23 +253,7 @@ struct Trial {
 
 Program fitted_program(const Task& task, const Explanation& explanation) {
   const Model model(task, *explanation.variant.program, explanation.variant.further);
-  const OutputErrorProblem& problem = model.problem();
-  Program program = problem.program;
-  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
-    const FreeParameter& free = problem.parameters[j];
-    program.graph.parameters[free.parameter].value[free.element] = explanation.fit.x[static_cast<Index>(j)];
-  }
-  for (std::size_t s = 0; s < problem.initial_states.size(); ++s) {
-    Diagnostics diagnostics;
-    auto state = parameters::find_state(program.graph, problem.initial_states[s].path, {}, diagnostics);
-    if (state) {
-      state->value = explanation.fit.x[std::ssize(problem.parameters) + static_cast<Index>(s)];
-      std::erase_if(program.graph.initial_states,
-                    [&](const InitialState& one) { return one.node == state->node && one.state == state->state; });
-      program.graph.initial_states.push_back(*state);
-    }
-  }
-  return program;
+  return fitted_program(model.problem(), explanation.fit.x);
 }
 
 NextExperiment next_experiment(const Task& task, std::span<const Explanation> rivals,
@@ -291,7 +285,7 @@ NextExperiment next_experiment(const Task& task, std::span<const Explanation> ri
   const auto best = std::ranges::max_element(trials, {}, &Trial::separation);
   const bool alone = second == rivals.end();
   const std::string wanted =
-      alone ? fmt::format("show {}", words(first)) : fmt::format("tell {} from {}", words(first), words(*second));
+      alone ? fmt::format("show {}", shown(first)) : fmt::format("tell {} from {}", words(first), words(*second));
   if (best == trials.end()) {
     result.reason = fmt::format("no excitation has room within the limits to {}", wanted);
     return result;
@@ -307,10 +301,10 @@ NextExperiment next_experiment(const Task& task, std::span<const Explanation> ri
   result.input = best->limits.name;
   result.unit = best->limits.unit;
   result.separation = best->separation;
-  result.reason = alone ? fmt::format("shows {} best: {:.2g} times the noise beyond what other parameters can do; {}",
-                                      words(first), best->separation, best->excitation.shows)
-                        : fmt::format("{} and {} would differ by {:.2g} times the noise, refitted; it shows {}",
-                                      words(first), words(*second), best->separation, best->excitation.shows);
+  result.reason = alone ? fmt::format("shows {} best: {} beyond what other parameters can do; {}", shown(first),
+                                      times_the_noise(best->separation), best->excitation.shows)
+                        : fmt::format("{} and {} would differ by {}, refitted; it shows {}", words(first),
+                                      words(*second), times_the_noise(best->separation), best->excitation.shows);
   for (std::size_t k = 0; k < best->excitation.values.size(); ++k) {
     result.time.push_back(static_cast<double>(k) * best->limits.sample_time);
   }

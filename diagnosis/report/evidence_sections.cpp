@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "diagnosis/effects/set_words.hpp"
 #include "diagnosis/report/diagram_picture.hpp"
 #include "diagnosis/report/html.hpp"
 #include "diagnosis/report/sections.hpp"
@@ -69,7 +70,7 @@ std::string name_of_rival(const Rival& rival) {
       text += " on " + rival.edges[i];
     }
   }
-  return text.empty() ? "calibration alone" : text;
+  return text.empty() ? std::string(no_effect) : text;
 }
 
 /// Whether a rival is the set of effects that the verdict names.

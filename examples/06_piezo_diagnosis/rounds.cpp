@@ -1,12 +1,12 @@
 #include "examples/06_piezo_diagnosis/rounds.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "codegen/parameters/apply.hpp"
+#include "diagnosis/effects/set_words.hpp"
 #include "examples/example.hpp"
 #include "support/atomic_file.hpp"
 #include "tuning/simulation.hpp"
@@ -20,7 +20,7 @@ std::string Round::effect() const {
 std::vector<std::string> Round::rivals() const {
   std::vector<std::string> names;
   for (const diagnosis::Rival& rival : found.rivals) {
-    std::string name = rival.effects.empty() ? "calibration alone" : fmt::format("{}", fmt::join(rival.effects, " + "));
+    std::string name = diagnosis::words_of_set(rival.effects);
     // The same effects may stand on several edges.
     if (rival.effects != std::vector{found.effects.front().id} && std::ranges::find(names, name) == names.end()) {
       names.push_back(std::move(name));

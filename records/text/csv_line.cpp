@@ -126,13 +126,26 @@ HeaderName split_header(std::string_view cell) {
   };
   if (cell.ends_with(']')) {
     if (const auto open = cell.find('[', end_of_index(cell)); open != std::string_view::npos) {
-      return with(open, open + 1, cell.size() - open - 2);
+      const auto close = cell.find(']', open);
+      if (close + 1 == cell.size() || is_unit_word(cell.substr(open + 1, close - open - 1))) {
+        return with(open, open + 1, close - open - 1);  // the first of `Time [s] [abs]`
+      }
+      const auto last = cell.rfind('[');
+      return with(last, last + 1, cell.size() - last - 2);
     }
   }
   if (cell.ends_with(')')) {
     if (const auto open = cell.rfind('(');
-        open != std::string_view::npos && open > 0 && may_begin_unit(cell[open + 1]) &&
+        open != std::string_view::npos && open > 0 &&
+        (may_begin_unit(cell[open + 1]) || scaled_unit(cell.substr(open + 1, cell.size() - open - 2))) &&
         !is_name_of_circuit(cell.substr(0, open), cell.substr(open + 1, cell.size() - open - 2))) {
+      // `u, mV (LGR S/N: 20)` of HOBO: what stands behind a unit in brackets is none.
+      if (!is_unit_word(cell.substr(open + 1, cell.size() - open - 2))) {
+        HeaderName before = split_header(trimmed(cell.substr(0, open)));
+        if (is_unit_word(before.unit)) {
+          return before;
+        }
+      }
       return with(open, open + 1, cell.size() - open - 2);
     }
   }

@@ -33,9 +33,22 @@ bool is_rule(std::string_view line) {
   return line.find("---") != std::string_view::npos && line.find_first_not_of("-|+=: \t\r") == std::string_view::npos;
 }
 
-/// `XOrg:,0.0` and `YUnits:,Volt`: one of two cells, of which the first ends with a colon, is no name of a column.
+/// `XOrg:,0.0` and `YUnits:,Volt`: one of two cells, of which the first ends with a colon, is no name of a column; nor
+/// is one of `Range=`.
 bool is_setting(const std::vector<Cell>& cells) {
-  return cells.size() <= 2 && cells.front().text.ends_with(':');
+  return cells.front().text.ends_with('=') || (cells.size() <= 2 && cells.front().text.ends_with(':'));
+}
+
+/// `f8,f4,f4` and `REAL;LREAL;BOOL` below the names: how the numbers were stored.
+bool states_types(const std::vector<Cell>& cells) {
+  return cells.size() > 1 && std::ranges::all_of(cells, [](const Cell& cell) {
+           return is_one_of(cell.text,
+                            {"f4",     "f8",      "i1",      "i2",     "i4",       "i8",     "u1",      "u2",
+                             "u4",     "u8",      "float",   "double", "single",   "real",   "lreal",   "int",
+                             "dint",   "uint",    "udint",   "sint",   "usint",    "word",   "dword",   "byte",
+                             "bool",   "int8",    "int16",   "int32",  "int64",    "uint8",  "uint16",  "uint32",
+                             "uint64", "float32", "float64", "dbl",    "datetime", "string", "boolean", "integer"});
+         });
 }
 
 /// Without what cannot be seen in it: the line ends of a name over several lines, blanks of other widths, and the
@@ -72,6 +85,9 @@ class HeadReader {
     }
     take_row_with_remark();
     std::vector<HeadLine> above = lines_above(head_, first_row_, layout_.separator);
+    if (above.size() > 1) {
+      std::erase_if(above, [](const HeadLine& one) { return states_types(one.cells); });
+    }
     const std::vector<HeadLine> scales = take_scales(above);
     pass_over_marks(above);
     if (above.empty()) {
@@ -197,13 +213,17 @@ class HeadReader {
       return;
     }
     const bool decimal_commas = layout_.separator == ',' && 2 * cells.size() == cells_in_row_;
-    throw InputError(error::ragged_row, source_.place_of(source_.line_at(layout_.first_row)),
-                     fmt::format("The row has {} cells where the line above has {}.", cells_in_row_, cells.size()),
-                     decimal_commas ? std::string("write decimal points, or separate the columns by semicolons.")
-                     : is_names
-                         ? std::string("give every column a name, and a number in every row.")
-                         : fmt::format("if the lines above are no part of the record, leave them out: --skip {}.",
-                                       source_.place_of(head_[line]).line));
+    const std::string_view text = head_[line].text;
+    throw InputError(
+        error::ragged_row, source_.place_of(source_.line_at(layout_.first_row)),
+        cells.size() == cells_in_row_
+            ? fmt::format("\"{}\" stands above the rows: it holds no names, and is no row like them.",
+                          trimmed(text).substr(0, 40))
+            : fmt::format("The row has {} cells where the line above has {}.", cells_in_row_, cells.size()),
+        decimal_commas ? std::string("write decimal points, or separate the columns by semicolons.")
+        : is_names     ? std::string("give every column a name, and a number in every row.")
+                       : fmt::format("if the lines above are no part of the record, leave them out: --skip {}.",
+                                     source_.place_of(head_[line]).line));
   }
 
   /// `t,0,0.001,0.002` above `u,1,2,3`: the signals lie on their side.

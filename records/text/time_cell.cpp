@@ -250,6 +250,9 @@ std::optional<TimeOfDay> take_clock(std::string_view& text) {
     rest.remove_prefix(1);
     seconds = *take_digits(rest, 2);
     result.digits = "0";
+    if (rest.starts_with("::")) {  // of Serial Studio
+      rest.remove_prefix(1);
+    }
     if (has_fraction(rest, ".,:;")) {
       rest.remove_prefix(1);
       take_fraction(rest, result);
@@ -428,6 +431,9 @@ std::optional<CellValue> time_cell(std::string_view text) {
     value.stamp.whole = of_a_day * day->days;
     value.is_ambiguous = day->is_ambiguous;
     return value;
+  }
+  if (day && rest.starts_with("/ ")) {  // 2024/06/03/ 10:00:00::001 of Serial Studio
+    rest.remove_prefix(1);
   }
   if ((day || year_to_come) && !take(rest, "T t_,-")) {
     return std::nullopt;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
+#include "records/text/cell_value.hpp"
 #include "support/names.hpp"
 #include "support/trimmed.hpp"
 
@@ -179,6 +181,25 @@ bool is_known_unit(std::string_view text) {
     at = end + 1;
   }
   return true;
+}
+
+std::optional<ScaledUnit> scaled_unit(std::string_view text) {
+  text = trimmed(text);
+  const auto end = std::min(text.find_first_not_of("0123456789.,eE+-"), text.size());
+  if (end == 0 || is_known_unit(text)) {
+    return std::nullopt;
+  }
+  // The E of 10 EV belongs to the unit: the longest number that leaves one.
+  for (std::size_t length = end; length > 0; --length) {
+    const std::string_view digits = text.substr(0, length);
+    const CellValue cell = cell_value(digits);
+    const bool number = cell.kind == CellKind::Number && digits.back() >= '0' && digits.back() <= '9';
+    std::string unit = unit_of_word(trimmed(text.substr(length)));
+    if (number && cell.number > 0.0 && unit != "1" && is_known_unit(unit)) {
+      return ScaledUnit{.factor = cell.number, .unit = std::move(unit)};
+    }
+  }
+  return std::nullopt;
 }
 
 bool is_key_of_units(std::string_view text) {

@@ -1,6 +1,7 @@
 // Units as the heads of records write them: which texts are units, and how tools spell them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,15 @@ namespace hysteron::records {
 /// Whether a text is a unit that measuring uses, with prefixes, powers and quotients: mV, um, N*m, rad/s, °C, %.
 /// The diagram's units are another matter: this only tells names from units.
 [[nodiscard]] bool is_known_unit(std::string_view text);
+
+/// 0.1 and A of 0.1 A.
+struct ScaledUnit {
+  double factor = 1.0;
+  std::string unit{};
+};
+
+/// A known unit with a number before it; nothing of 1/min, which is a unit.
+[[nodiscard]] std::optional<ScaledUnit> scaled_unit(std::string_view text);
 
 /// Whether a cell says that its row states units: unit, units, Einheit.
 [[nodiscard]] bool is_key_of_units(std::string_view text);

@@ -16,8 +16,13 @@ namespace {
 std::optional<TimeUnit> part_of_second(const TableColumn& column) {
   const auto unit =
       column.is_named && column.kind == CellKind::Number ? time_unit(last_word(column.name)) : std::nullopt;
-  if (!unit || unit->over != 1 || unit->under == 1 || !column.has_values || column.fault) {
+  if (!unit || unit->over != 1 || !column.has_values || column.fault) {
     return std::nullopt;
+  }
+  if (unit->under == 1) {  // Fractional Seconds of Keithley
+    const bool fractions = is_one_of(column.name, {"fractional seconds", "fraction of seconds", "fractional second"}) &&
+                           std::ranges::all_of(column.values, [](double value) { return value >= 0.0 && value < 1.0; });
+    return fractions ? unit : std::nullopt;
   }
   const auto parts = static_cast<double>(unit->under);
   const bool all = std::ranges::all_of(
@@ -54,7 +59,11 @@ void join_split_times(Table& table) {
         whole->values[k] += whole->stamps[k].fraction;
       }
     }
-    whole->resolution.take(unit->under == 1000 ? "0.001" : unit->under == 1'000'000 ? "0.000001" : "0.000000001");
+    if (unit->under == 1) {
+      whole->resolution = part.resolution;
+    } else {
+      whole->resolution.take(unit->under == 1000 ? "0.001" : unit->under == 1'000'000 ? "0.000001" : "0.000000001");
+    }
     part.is_part_of_time = true;
     table.notes.push_back(fmt::format("{} counts the parts of a second of {}", part.name, whole->name));
     return;

@@ -163,23 +163,27 @@ TEST_P(Snippets, DoWhatThePageSays) {
 
 INSTANTIATE_TEST_SUITE_P(Docs, Snippets, testing::ValuesIn(pages_with_snippets()), test_name);
 
-/// A viewer shows no word that stands behind a fence, so the prose has to say which file a snippet is.
-TEST(SnippetFiles, OfTutorialAndWalksAreNamedByTheProse) {
+/// A viewer shows no word that stands behind a fence, so the prose has to say which file a snippet is, and where what
+/// is typed ends and what is printed begins.
+TEST(SnippetCaptions, NameEachFileAndWhatIsPrinted) {
   std::size_t files = 0;
-  for (const auto& path : all_pages()) {
-    if (!is_below(path, "docs/walks/") && !is_below(path, "docs/tutorial.md")) {
-      continue;
-    }
+  std::size_t printed = 0;
+  for (const auto& path : pages_with_snippets()) {
     for (const Snippet& snippet : read_page(path).snippets) {
       if (snippet.has("file")) {
         const auto name = "`" + snippet.attributes.find("file")->second + "`";
         EXPECT_NE(snippet.before.find(name), std::string::npos)
             << path.string() << ":" << snippet.line << ": the text before it does not name " << name;
         ++files;
+      } else if (snippet.has("expected")) {
+        EXPECT_NE(snippet.before.find("prints"), std::string::npos)
+            << path.string() << ":" << snippet.line << ": the text before it does not say that this is printed";
+        ++printed;
       }
     }
   }
-  EXPECT_GT(files, 10U);
+  EXPECT_GT(files, 100U);
+  EXPECT_GT(printed, 100U);
 }
 
 TEST(ExpectedText, GapsStandForAnyTextAndAnyLines) {

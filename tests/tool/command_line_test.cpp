@@ -56,6 +56,17 @@ TEST(CommandLine, SlipsAreExplained) {
 
 /// An empty value is most often a variable of the shell that is not set: no command goes on as if the option were not
 /// there, and none writes into the current folder instead.
+TEST(CommandLine, WhatIsMissingIsExplainedAndAMisspeltOptionIsToldFirst) {
+  const test::Workbench bench;
+  bench.write("plant.st", "");
+  EXPECT_EQ(bench.shell("hysteron run plant.st --inn log.csv").err,
+            "HY730 error: hysteron run has no option --inn.\nmend: did you mean --in?\n\n1 error\n");
+  EXPECT_THAT(bench.shell("hysteron run plant.st").err,
+              AllOf(HasSubstr("--in is required."), HasSubstr("give --in LOG.csv: The record that drives the inputs")));
+  EXPECT_THAT(bench.shell("hysteron check").err,
+              AllOf(HasSubstr("FILE is required."), HasSubstr("give FILE: Diagrams")));
+}
+
 TEST(CommandLine, EmptyValuesAreRefused) {
   const test::Workbench bench;
   bench.write("plant.st", test::plant);

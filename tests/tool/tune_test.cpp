@@ -385,6 +385,12 @@ TEST_F(Tune, IntervalsOfTrainAndTestAreHeldAgainstEachOtherAndTheRecord) {
   const auto rest = with("test = [3.0, 4.0]\n");
   EXPECT_EQ(rest.code, 0) << rest.err;
   EXPECT_THAT(rest.out, Not(HasSubstr("no test intervals"))) << "train is then what test leaves";
+  EXPECT_THAT(rest.out, Not(HasSubstr("neither in train nor in test")));
+  // The intervals of a template beside a longer record.
+  const auto part = with("train = [0.0, 1.0]\ntest = [1.0, 2.0]\n");
+  EXPECT_EQ(part.code, 0) << part.err;
+  EXPECT_THAT(part.out,
+              HasSubstr("samples of log.csv are neither in train nor in test of [tune]: the record goes from 0 s to"));
 }
 
 TEST_F(Tune, ABoundThatAParameterRanIntoIsNamed) {

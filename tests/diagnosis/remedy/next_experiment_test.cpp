@@ -223,6 +223,22 @@ TEST(NextExperiment, NoneWhereNothingWouldTell) {
   EXPECT_NE(alone.reason.find("would show lag"), std::string::npos) << alone.reason;
 }
 
+TEST(NextExperiment, NamesTheDiagramWithoutAnEffect) {
+  Plant nothing = lag;
+  nothing.values = {1e-9};
+  Plant neither = delay;
+  neither.values = {1e-9};
+  Explanation plain = explanation_of(nothing);
+  plain.variant.effects.clear();
+  const std::vector<Explanation> one{plain};
+  const NextExperiment alone = next_experiment(task(), one, {}, 0.02);
+  EXPECT_NE(alone.reason.find("shows the fitted parameters best: more than 1000 times the noise"), std::string::npos)
+      << alone.reason;
+  const std::vector<Explanation> two{explanation_of(neither), plain};
+  const NextExperiment pair = next_experiment(task(), two, {}, 0.02);
+  EXPECT_NE(pair.reason.find("would tell delay from the fitted parameters alone"), std::string::npos) << pair.reason;
+}
+
 TEST(NextExperiment, NothingWhereNoInputMoves) {
   Task still = task();
   records::Record record = records::Record::even(0.0, sample_time, 4000);

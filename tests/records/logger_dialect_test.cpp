@@ -1,0 +1,133 @@
+// Loggers, drives and robots: rows that are parts of one, units with a factor, types below the names.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gmock/gmock.h>
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "records/read.hpp"
+#include "records/text/csv_line.hpp"
+#include "tests/records/dialect.hpp"
+#include "tests/records/refusal.hpp"
+
+namespace hysteron::records {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::string notes_of(const Record& record) {
+  return fmt::format("{}", fmt::join(record.notes(), "\n"));
+}
+
+TEST(LoggerDialect, EachHoldsTheSameNumbers) {
+  const std::vector<Dialect> dialects{
+      {"topics of ROS one below the other", written("time,u,y\n", "{t:.3f},{u:.4f},\n{t:.3f},,{y:.4f}\n")},
+      {"date, time and fractional seconds of Keithley",
+       written("Index,u,Unit,Date,Time,Fractional Seconds,y\n",
+               "{k},{u:.4f},Volt DC,06/03/2024,10:00:00,{t:.6f},{y:.4f}\n")},
+      {"two colons of Serial Studio", written("RX Date/Time,u,y\n", "2024/06/03/ 10:00:00::{k:03},{u:.4f},{y:.4f}\n")},
+      {"types below the names, of INCA",
+       written("ETASAsciiItemFile\trecord\nsampleCount\t40\ntime\tu\ty\nf8\tf4\tf4\ns\tV\tum\n",
+               "{t:.6f}\t{u:.4f}\t{y:.4f}\n")},
+      {"types below the names, of a PLC", written("time;u;y\nLREAL;REAL;REAL\n", "{t:.3f};{u:.4f};{y:.4f}\n")},
+      {"settings with =, of LabChart",
+       written("Interval=\t0.001 s\nChannelTitle=\tu\ty\nRange=\t10.000 V\t10.000 um\n", "{t:.3f}\t{u:.4f}\t{y:.4f}\n"),
+       {.time = "1", .columns = {{"u", "2"}, {"y", "3"}}}},
+  };
+  for (const Dialect& one : dialects) {
+    expect_the_numbers(one);
+  }
+}
+
+TEST(LoggerDialect, UnitsBelowTypesAndBeforeBracketsAreKept) {
+  const std::string row = "{t:.6f}\t{u:.4f}\t{y:.4f}\n";
+  for (const std::string_view head :
+       {"time\tu\ty\nf8\tf4\tf4\ns\tmV\tum\n", "Time [s] [abs]\tu [mV] [control]\ty [um] [measured]\n",
+        "\"Time, s\"\t\"u, mV (LGR S/N: 20, SEN S/N: 21)\"\t\"y, um (LGR S/N: 20, SEN S/N: 22)\"\n"}) {
+    SCOPED_TRACE(head);
+    const Record record = parse_record("log.txt", written(head, row));
+    EXPECT_EQ(record.column("u").unit, "mV");
+    EXPECT_EQ(record.column("y").unit, "um");
+    EXPECT_DOUBLE_EQ(record.sample_time(), 1e-3);
+  }
+  // No unit before it: the brackets are all there is.
+  EXPECT_EQ(split_header("u (LGR S/N: 20)").unit, "LGR S/N: 20");
+  EXPECT_EQ(split_header("Y[2] [um]").unit, "um");
+  EXPECT_EQ(split_header("x [rad/s] (filtered)").unit, "rad/s");
+}
+
+TEST(LoggerDialect, PartsOfARowAreToldAndNeverMixTwoNumbers) {
+  const Record parts = parse_record("log.csv", "t,u,y\n0,1,\n0,,3\n1,2,\n1,,6\n2,3,\n2,,9\n");
+  EXPECT_EQ(parts.column("u").values, (std::vector<double>{1.0, 2.0, 3.0}));
+  EXPECT_EQ(parts.column("y").values, (std::vector<double>{3.0, 6.0, 9.0}));
+  EXPECT_THAT(notes_of(parts), HasSubstr("put together: 6 rows are 3"));
+  // A signal of half the rate keeps its gaps, and says so to who asks for it.
+  const Record half = parse_record("log.csv", "t,u,y\n0,1,\n0,,3\n1,2,\n2,3,\n2,,9\n");
+  EXPECT_EQ(half.column("u").values, (std::vector<double>{1.0, 2.0, 3.0}));
+  EXPECT_ANY_THROW((void)half.column("y"));
+  // Two numbers of one time: neither is taken.
+  EXPECT_THAT(refusal_of("t,u,y\n0,1,\n0,2,3\n1,2,\n1,2,6\n2,3,\n2,3,9\n"), HasSubstr("HY508"));
+}
+
+TEST(LoggerDialect, AFactorBeforeAUnitIsTaken) {
+  const Record record = parse_record("log.csv", "t [ms],i [0.1 A],n [1e-3 V],p (0.01%)\n0,2,3,4\n1,6,7,8\n");
+  EXPECT_EQ(record.column("i").unit, "A");
+  EXPECT_DOUBLE_EQ(record.column("i").values[0], 0.2);
+  EXPECT_EQ(record.column("n").unit, "V");
+  EXPECT_DOUBLE_EQ(record.column("n").values[1], 0.007);
+  EXPECT_EQ(record.column("p").unit, "%");
+  EXPECT_DOUBLE_EQ(record.column("p").values[1], 0.08);
+  EXPECT_THAT(notes_of(record), HasSubstr("column i is in 0.1 A: its numbers were multiplied by 0.1"));
+  // What the user says goes before it.
+  const Record stated = parse_record("log.csv", "t,u [0.1 V]\n0,1\n1,5\n", {.columns = {{"u", "u", "V"}}});
+  EXPECT_DOUBLE_EQ(stated.column("u").values[1], 5.0);
+  EXPECT_EQ(stated.column("u").unit, "V");
+  // Units that begin with a number, a number without a unit, and the time's own.
+  const Record speed = parse_record("log.csv", "t (100 ns),n [1/min],ch (2)\n0,1,3\n1,5,3\n");
+  EXPECT_EQ(speed.column("n").unit, "1/min");
+  EXPECT_DOUBLE_EQ(speed.column("n").values[1], 5.0);
+  EXPECT_DOUBLE_EQ(speed.sample_time(), 1e-7);
+  EXPECT_NE(speed.find("ch (2)"), nullptr);
+}
+
+TEST(LoggerDialect, AFactorThatCouldBeARangeOrBeDoneAlreadyHasTwoReadings) {
+  for (const std::string_view name : {"u [10 mV]", "u (10 V)", "u (x1000)", "u [1000x]", "u [*1000]",
+                                      "u [\xC3\x97"
+                                      "1000]"}) {
+    const std::string said = refusal_of(fmt::format("t,{}\n0,1\n1,2\n", name));
+    EXPECT_THAT(said, HasSubstr("HY514")) << name;
+    EXPECT_THAT(said, HasSubstr("--column u=u[mV]")) << name;
+  }
+  const Record stated = parse_record("log.csv", "t,u (x1000)\n0,1\n1,2\n", {.columns = {{"u", "u", "mV"}}});
+  EXPECT_EQ(stated.column("u").unit, "mV");
+}
+
+TEST(LoggerDialect, ALineThatIsNeitherNamesNorARowIsShown) {
+  const std::string said = refusal_of("rig\nmin\tCH1\tCH2\t\n\t60\t60\t\n0.1\t1\t2\t\n0.2\t2\t4\t\n0.3\t2\t4\t\n");
+  EXPECT_THAT(said, HasSubstr("holds no names, and is no row like them"));
+  EXPECT_THAT(said, Not(HasSubstr("4 cells where the line above has 4")));
+  EXPECT_THAT(said, HasSubstr("--skip 3"));
+}
+
+TEST(LoggerDialect, FormatsOfOtherProgramsAreNamed) {
+  const std::pair<std::string, std::string_view> cases[] = {
+      {"{'t': 0.0, 'u': 0.1}\n{'t': 0.001, 'u': 0.2}\n", "ast.literal_eval"},
+      {"# HELP u voltage\n# TYPE u gauge\nu 0.1 1717408800000\n", "Prometheus"},
+      {"FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\n", "mavlogdump.py"},
+      {">u:1717408800001:0.1\n>y:1717408800001:0.3\n", "Teleplot"},
+      {std::string("SQLite format 3\0", 16) + std::string(84, '\0'), "hysteron history"},
+  };
+  for (const auto& [bytes, said] : cases) {
+    SCOPED_TRACE(bytes);
+    EXPECT_THAT(refusal_of(bytes), HasSubstr("HY513"));
+    EXPECT_THAT(refusal_of(bytes), HasSubstr(std::string(said)));
+  }
+  EXPECT_THAT(refusal_of("> plot,\nt,u\n0,1\n0.5,x\n"), Not(HasSubstr("Teleplot")));
+}
+
+}  // namespace
+}  // namespace hysteron::records

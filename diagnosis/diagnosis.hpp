@@ -14,6 +14,7 @@
 #include "diagnosis/evidence/law_findings.hpp"
 #include "diagnosis/noise/noise_floor.hpp"
 #include "diagnosis/rules.hpp"
+#include "tuning/friction_curves.hpp"
 
 namespace hysteron::diagnosis {
 
@@ -204,6 +205,7 @@ struct Diagnosis {
   std::vector<std::string> cannot_tell{};
   NextExperiment next{};
   std::vector<Trace> traces{};
+  std::vector<FrictionCurve> frictions{};        ///< of the improved diagram, over the first record
   std::string top{};                             ///< the diagram's top block
   std::string improved_text{};                   ///< the diagram with the effects, formatted
   parameters::ParameterFile improved_file{};     ///< its parameters

@@ -50,6 +50,15 @@ std::string loops_section(const Diagnosis& diagnosis) {
   return html.empty() ? html : "<section class=\"loops\"><h2>Output over input</h2>\n" + html + "</section>\n";
 }
 
+/// A friction is known by its force over the velocity.
+std::string frictions_section(const Diagnosis& diagnosis) {
+  std::string html;
+  for (std::size_t i = 0; i < diagnosis.frictions.size(); ++i) {
+    html += folded(i == 0, diagnosis.frictions[i].block, fmt::format("friction-{}", i));
+  }
+  return html.empty() ? html : "<section class=\"frictions\"><h2>Friction over velocity</h2>\n" + html + "</section>\n";
+}
+
 std::string maps_section(const Diagnosis& diagnosis) {
   if (diagnosis.maps.empty()) {
     return {};
@@ -74,6 +83,7 @@ std::string report_page(const Diagnosis& diagnosis, const Program& improved) {
   html += report::where_section(diagnosis, improved.graph);
   html += traces_section(diagnosis);
   html += loops_section(diagnosis);
+  html += frictions_section(diagnosis);
   html += maps_section(diagnosis);
   html += report::rivals_section(diagnosis);
   html += report::next_section(diagnosis);

@@ -56,16 +56,23 @@ std::string map_of(const MapFinding& map) {
                      array_of(map.before), array_of(map.after), array_of(map.mean));
 }
 
+std::string friction_of(const FrictionCurve& curve) {
+  return fmt::format(R"({{"block":{},"forceUnit":{},"velocityUnit":{},"velocity":{},"force":{}}})",
+                     text_of(curve.block), text_of(curve.force_unit), text_of(curve.velocity_unit),
+                     array_of(curve.velocity), array_of(curve.force));
+}
+
 }  // namespace
 
 std::string page_data(const Diagnosis& diagnosis) {
   const NextExperiment& next = diagnosis.next;
   return fmt::format(
-      "{{\"unit\":{},\n\"traces\":{},\n\"maps\":{},\n\"next\":{{\"input\":{},\"unit\":{},\"time\":{},\"values\":{}}}}}",
+      "{{\"unit\":{},\n\"traces\":{},\n\"frictions\":{},\n\"maps\":{},\n\"next\":{{\"input\":{},\"unit\":{},\"time\":{}"
+      ",\"values\":{}}}}}",
       text_of(diagnosis.gap.unit),
       json_list(diagnosis.traces, [&](const Trace& trace) { return trace_of(diagnosis, trace); }),
-      json_list(diagnosis.maps, map_of), text_of(next.input), text_of(next.unit), time_of(next.time),
-      array_of(next.values));
+      json_list(diagnosis.frictions, friction_of), json_list(diagnosis.maps, map_of), text_of(next.input),
+      text_of(next.unit), time_of(next.time), array_of(next.values));
 }
 
 }  // namespace hysteron::diagnosis::report

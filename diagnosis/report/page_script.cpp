@@ -63,6 +63,18 @@ function loopFigure(host, trace) {
   });
 }
 
+// The force of a friction over its velocity.
+function frictionFigure(host, friction) {
+  const curve = { kind: "after", text: "in the improved diagram", x: numbers(friction.velocity), y: numbers(friction.force) };
+  const xLabel = named("velocity", friction.velocityUnit), yLabel = named("force of " + friction.block, friction.forceUnit);
+  zoomFigure(host, {
+    name: `Force of ${friction.block} over velocity`, plane: true, entries: [curve], xLabel,
+    x: reach([curve.x], 0, curve.x.length, []), y: reach([curve.y], 0, curve.y.length, [0]),
+    panels: () => [{ title: "", yLabel, height: 300, curves: [curve] }],
+    read: (x, y) => `${xLabel} = ${figure(x)} · ${yLabel} = ${figure(y)}`,
+  });
+}
+
 // One small plot a map, those that explain most first.
 function mapFigures(host, maps, unit) {
   keys(host, [{ kind: "before", text: "before: calibrated, RMS" }, { kind: "after", text: "after: improved, RMS" },
@@ -140,6 +152,10 @@ data.traces.forEach((trace, i) => {
   const overTime = document.getElementById("trace-" + i), loop = document.getElementById("loop-" + i);
   drawOnceOpen(overTime, () => traceFigure(overTime, trace));
   if (loop) drawOnceOpen(loop, () => loopFigure(loop, trace));
+});
+data.frictions.forEach((friction, i) => {
+  const host = document.getElementById("friction-" + i);
+  drawOnceOpen(host, () => frictionFigure(host, friction));
 });
 window.addEventListener("beforeprint", () => {
   document.querySelectorAll("details.trace").forEach((frame, i) => { if (i < 4) frame.open = true; });

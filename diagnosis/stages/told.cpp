@@ -19,7 +19,9 @@
 #include "diagnosis/findings/where.hpp"
 #include "diagnosis/outlook.hpp"
 #include "diagnosis/remedy/improved.hpp"
+#include "diagnosis/remedy/next_experiment.hpp"
 #include "diagnosis/search/loop_noise.hpp"
+#include "tuning/simulation.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -134,6 +136,12 @@ void add_improved(const Judged& judged, const Explanation& kept, Diagnosis& resu
       improved_file(record.task, parameters::by_element(record.input.file, record.input.program.graph), kept);
 }
 
+std::vector<FrictionCurve> frictions_of(const Cleaned& record, const Explanation& kept) {
+  const Program program = fitted_program(record.task, without_noise(kept, record.top));
+  Diagnostics unused;
+  return friction_curves(program, drive_from(record.task.records.front(), program, {}, unused));
+}
+
 }  // namespace
 
 Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOptions& options, Rules& rules) {
@@ -161,6 +169,7 @@ Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOption
   }
   result.traces = traces_of(record.task, result.gaps, record.nominal, calibrated.fit.residuals, kept.fit.residuals);
   draw_over_inputs(record.task, kept.variant.program->graph, judged.evidence, result.traces);
+  result.frictions = frictions_of(record, kept);
   add_improved(judged, kept, result);
   add_outlook({.task = record.task,
                .nominal = *record.given,

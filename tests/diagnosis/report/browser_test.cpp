@@ -1,6 +1,7 @@
 // The report in a browser without a screen: the script runs without fault, and drags and double clicks zoom.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <string>
 
 #include "diagnosis/report/page.hpp"
@@ -41,6 +42,41 @@ TEST_F(ReportInBrowser, AHysteresisIsDrawnOverItsInput) {
   EXPECT_THAT(rich.page, HasSubstr("data-figures=\"11\""));
   EXPECT_THAT(rich.page, HasSubstr("data-curves=\"measured,after\""));
   EXPECT_THAT(rich.page, HasSubstr("data-empty=\"0\""));
+}
+
+TEST_F(ReportInBrowser, AFrictionIsDrawnOverItsVelocity) {
+  Diagnosis found = fixture::rich_diagnosis();
+  found.frictions = {{.block = "DRY", .force_unit = "N", .velocity_unit = "m/s"}};
+  for (int k = 0; k < 100; ++k) {
+    found.frictions[0].velocity.push_back(std::sin(0.1 * k));
+    found.frictions[0].force.push_back(std::copysign(0.2, found.frictions[0].velocity.back()));
+  }
+  const Shown rich = shown(report_page(found, fixture::rich_program()), R"(
+    const curves = [...document.querySelectorAll("#friction-0 path.curve")];
+    document.body.dataset.curves = curves.filter(curve => curve.getAttribute("d")).length;)");
+  expect_no_fault(rich);
+  EXPECT_THAT(rich.page, HasSubstr("data-curves=\"1\""));
+  EXPECT_THAT(rich.page, HasSubstr("velocity [m/s]"));
+  EXPECT_THAT(rich.page, HasSubstr("force of DRY [N]"));
+}
+
+/// A share that stands over a wire ends before the box to which the wire leads.
+TEST_F(ReportInBrowser, SharesDoNotReachIntoBoxes) {
+  Diagnosis found = fixture::rich_diagnosis();
+  found.effects.clear();
+  found.edges = {{.edge = "U", .share = 0.9995}, {.edge = "A.XOUT", .share = 0.9996}};
+  const Program chain = compile_text(
+      "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR A : HY_LAG; B : "
+      "HY_COULOMB_FRICTION; END_VAR A(XIN := U); B(XIN := A.XOUT, V := U); Y := B.XOUT; END_FUNCTION_BLOCK");
+  const Shown tried = shown(report_page(found, chain), R"(
+    const of = selector => [...document.querySelectorAll("svg.diagram " + selector)].map(one => one.getBoundingClientRect());
+    const overlap = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    const boxes = of("rect"), shares = of("text.share");
+    document.body.dataset.shares = shares.length;
+    document.body.dataset.overlaps = shares.filter(share => boxes.some(box => overlap(share, box))).length;)");
+  expect_no_fault(tried);
+  EXPECT_THAT(tried.page, HasSubstr("data-shares=\"2\""));
+  EXPECT_THAT(tried.page, HasSubstr("data-overlaps=\"0\""));
 }
 
 TEST_F(ReportInBrowser, EmptyAndRefusedPagesRunWithoutAFault) {

@@ -224,6 +224,20 @@ TEST(ReportPage, TheDataAreTheTracesAsResiduals) {
   }
 }
 
+TEST(ReportPage, AFrictionIsDrawnOverItsVelocity) {
+  Diagnosis found = fixture::rich_diagnosis(50);
+  EXPECT_THAT(report_page(found, fixture::rich_program()), Not(HasSubstr("Friction over velocity")));
+  found.frictions = {
+      {.block = "DRY", .force_unit = "N", .velocity_unit = "m/s", .velocity = {-1.0, 1.0}, .force = {-0.2, 0.2}}};
+  const std::string page = report_page(found, fixture::rich_program());
+  EXPECT_EQ(unbalanced(page), "");
+  EXPECT_THAT(page, HasSubstr("<h2>Friction over velocity</h2>"));
+  EXPECT_THAT(page, HasSubstr("id=\"friction-0\""));
+  const nlohmann::json data = nlohmann::json::parse(data_of(page));
+  EXPECT_EQ(data["frictions"][0]["velocityUnit"], "m/s");
+  EXPECT_DOUBLE_EQ(data["frictions"][0]["force"][1], 0.2);
+}
+
 TEST(ReportPage, WhatIsNotFiniteIsNullOrADash) {
   Diagnosis found = fixture::rich_diagnosis(50);
   found.traces[0].improved[3] = std::nan("");

@@ -15,7 +15,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr const char* run_file = R"([task]
+constexpr const char* traced_run = R"([task]
 scheduling = "other"
 lock_memory = false
 [outputs.Y]
@@ -46,7 +46,7 @@ constexpr const char* serve = "hysteron serve plant.st --config RUN.toml --engin
 TEST(TroubledDisk, AReadOnlyOneEndsNoStart) {
   const test::Workbench bench;
   bench.write("plant.st", test::plant);
-  bench.write("RUN.toml", run_file);
+  bench.write("RUN.toml", traced_run);
   const std::string once = serve;
   const auto served = bench.shell(
       with_disk("size=10m", once + "50 && mount -o remount,ro none disk && { " + once + "50; echo ended by $?; }; " +
@@ -75,7 +75,7 @@ TEST(TroubledDisk, AReadOnlyOneEndsNoStart) {
 TEST(TroubledDisk, AFullOneEndsNoStart) {
   const test::Workbench bench;
   bench.write("plant.st", test::plant);
-  bench.write("RUN.toml", run_file);
+  bench.write("RUN.toml", traced_run);
   for (const char* const disk : {"nr_inodes=1", "size=10m,ro"}) {
     const auto served = bench.shell(with_disk(disk, std::string(serve) + "50; code=$?; rmdir disk 2>&-; exit $code"));
     if (served.code == 77) {

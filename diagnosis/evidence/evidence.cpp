@@ -1,6 +1,7 @@
 #include "diagnosis/evidence/evidence.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -15,7 +16,6 @@
 #include "diagnosis/evidence/open_loop.hpp"
 #include "diagnosis/evidence/output_space.hpp"
 #include "diagnosis/evidence/set_search.hpp"
-#include "diagnosis/evidence/shapley.hpp"
 #include "diagnosis/policy.hpp"
 #include "diagnosis/search/expansion.hpp"
 
@@ -210,26 +210,35 @@ double closed_by(const Explored& there, std::vector<std::size_t> laws) {
   return 1.0 - std::exp(part.log_square - there.bare.log_square);
 }
 
-/// The share of each group of a set's laws in what the set closes.
-std::map<std::string, double> shares_of(const Explored& there, const LawSet& set,
-                                        const std::vector<std::string>& group_of_law) {
-  const std::set<std::string> names(group_of_law.begin(), group_of_law.end());
-  const std::vector<std::string> groups(names.begin(), names.end());
-  const std::vector<double> shares = shapley_shares(groups.size(), [&](std::size_t chosen) {
-    std::vector<std::size_t> laws;
+/// What the laws of one group close, in the mean over all orders in which the groups of the set may come (Shapley).
+double share_of(const Explored& there, const LawSet& set, const std::vector<std::string>& group_of_law,
+                const std::string& group) {
+  std::vector<std::string> groups = group_of_law;
+  std::ranges::sort(groups);
+  groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
+  std::erase(groups, group);
+  const std::size_t others = groups.size();
+  double share = 0.0;
+  for (std::size_t chosen = 0; chosen < (std::size_t{1} << others); ++chosen) {
+    std::vector<std::size_t> without;
+    std::vector<std::size_t> with;
     for (std::size_t k = 0; k < set.laws.size(); ++k) {
-      const auto at = std::ranges::find(groups, group_of_law[k]) - groups.begin();
-      if (((chosen >> at) & 1U) != 0) {
-        laws.push_back(set.laws[k]);
+      const auto at = static_cast<std::size_t>(std::ranges::find(groups, group_of_law[k]) - groups.begin());
+      const bool own = at == others;
+      if (own || ((chosen >> at) & 1U) != 0) {
+        with.push_back(set.laws[k]);
+        if (!own) {
+          without.push_back(set.laws[k]);
+        }
       }
     }
-    return closed_by(there, std::move(laws));
-  });
-  std::map<std::string, double> result;
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    result[groups[i]] = shares[i];
+    const auto before = static_cast<double>(std::popcount(chosen));
+    const auto all = static_cast<double>(others + 1);
+    // before! (all − before − 1)! / all!
+    const double weight = std::exp(std::lgamma(before + 1.0) + std::lgamma(all - before) - std::lgamma(all + 1.0));
+    share += weight * (closed_by(there, with) - closed_by(there, without));
   }
-  return result;
+  return share;
 }
 
 std::vector<std::string> families_by_law(const Explored& there, const LawSet& set) {
@@ -251,7 +260,6 @@ SetFinding described(const Explored& there, const LawSet& set, const VectorXd& k
   for (std::size_t k = 0; k < set.laws.size(); ++k) {
     numbered.push_back(std::to_string(k));
   }
-  const std::map<std::string, double> shares = shares_of(there, set, numbered);
   Index at = 0;
   for (const std::size_t i : set.laws) {
     const Law& law = (*there.laws)[i];
@@ -268,7 +276,7 @@ SetFinding described(const Explored& there, const LawSet& set, const VectorXd& k
       }
       ++at;
     }
-    finding.closed = shares.at(numbered[result.laws.size()]);
+    finding.closed = share_of(there, set, numbered, numbered[result.laws.size()]);
     result.laws.push_back(std::move(finding));
   }
   return result;
@@ -425,7 +433,7 @@ Evidence Weighing::told(const Rules& rules, std::size_t view) {
     };
     if (const auto set = std::ranges::find_if(sets, holds); set != sets.end()) {
       const Explored& there = spaces[set->space];
-      finding.closed = shares_of(there, *set, families_by_law(there, *set)).at(family);
+      finding.closed = share_of(there, *set, families_by_law(there, *set), family);
       std::vector<std::size_t> own = set->laws;
       std::erase_if(own, [&](std::size_t i) { return (*there.laws)[i].family != family; });
       finding.alone = closed_by(there, std::move(own));

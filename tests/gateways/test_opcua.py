@@ -79,7 +79,6 @@ class OfATask(unittest.TestCase):
         self.task.process.kill()
         self.task.process.wait(timeout=60)
         self.task.process.stdout.close()
-        self.task.process.stderr.close()
 
     def test_points_stand_in_folders_with_units_ranges_and_types(self):
         client = self.start()
@@ -242,7 +241,6 @@ class OfATask(unittest.TestCase):
         self.assertEqual(client.namespace_version()["value"], layout[:16])
         self.task.stop()
         self.task.process.stdout.close()
-        self.task.process.stderr.close()
         self.task.write("diagram.st", EDITED)
         self.task.write("RUN.toml", RUN_FILE.replace("COUNT", "LEVEL"))
         self.task.__enter__()

@@ -4,6 +4,7 @@ import re
 import signal
 import subprocess
 import tempfile
+import time
 
 TOOL = os.environ["HYSTERON_TOOL"]
 
@@ -25,13 +26,28 @@ class Served:
         return file.name
 
     def __enter__(self):
-        self.process = subprocess.Popen(self.command, cwd=self.path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        with open(os.path.join(self.path, "notices.txt"), "w", encoding="utf-8") as notices:
+            self.process = subprocess.Popen(self.command, cwd=self.path, stdout=subprocess.PIPE, stderr=notices, text=True)
         self.status = self.process.stdout.readline()
         if not self.status:
-            raise AssertionError(self.process.stderr.read())
+            self.process.wait()
+            raise AssertionError(self.notices())
         self.modbus_port = self._port(r"Modbus on \S+:(\d+)")
         self.web_port = self._port(r"live page on http://\S+:(\d+)/")
         return self
+
+    def notices(self):
+        """What it has said on standard error so far."""
+        with open(os.path.join(self.path, "notices.txt"), encoding="utf-8") as file:
+            return file.read()
+
+    def wait_for_notice(self, text, seconds=20.0):
+        """What lasts shorter than the pace of notices may never be told of."""
+        end = time.monotonic() + seconds
+        while text not in self.notices():
+            if time.monotonic() > end:
+                raise AssertionError(f"{text!r} was not said: {self.notices()!r}")
+            time.sleep(0.05)
 
     def _port(self, pattern):
         found = re.search(pattern, self.status)
@@ -46,12 +62,11 @@ class Served:
     def stop(self):
         """Ends it; what it printed, and its exit code."""
         self.process.send_signal(signal.SIGTERM)
-        out, err = self.process.communicate(timeout=60)
-        return self.status + out + err, self.process.returncode
+        out, _ = self.process.communicate(timeout=60)
+        return self.status + out + self.notices(), self.process.returncode
 
     def __exit__(self, *_):
         if self.process.poll() is None:
             self.stop()
         self.process.stdout.close()
-        self.process.stderr.close()
         self._folder.cleanup()

@@ -230,6 +230,7 @@ class LivePage(unittest.TestCase):
                 page.wait_for(f"{scale}.textContent === '0.5000' && {scale}.classList.contains('forced')")
                 self.assertIn("(forced)", page.text("#trends"))
             self.assertEqual(values_of(task.web_port)["values"][0], 0.5)
+            task.wait_for_notice("Forced: SCALE = 0.5 from the live page")
             browser.type(field, "")
             browser.click("tr.is-forced button")
             browser.wait_for("document.getElementById('forced').hidden")

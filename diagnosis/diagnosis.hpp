@@ -62,7 +62,7 @@ struct Rival {
   std::vector<std::string> effects{};
   std::vector<std::string> edges{};  ///< of each effect, beside it
   std::size_t parameters = 0;        ///< that the effects bring, all together
-  double improved_rms = 0.0;         ///< of the output whose gap counts, in its unit
+  double improved_rms = 0.0;         ///< of the output whose gap counts, in its unit; NaN: that set was not kept
   double support = 0.0;              ///< log likelihood less that of the best, 0 or below
   double probability = 0.0;
 };

@@ -75,7 +75,7 @@ constexpr auto formats = std::to_array<Format>({
     {"MCAP", [](std::string_view bytes, std::string_view ending) { return begins(bytes, "\x89MCAP0\r\n") || ending == "mcap"; }, nullptr,
      "open it in PlotJuggler or Foxglove and export the signals as CSV."},
     {"a database of SQLite", [](std::string_view bytes, std::string_view ending) { return begins(bytes, "SQLite format 3\0"sv) || ending == "db3"; },
-     nullptr, "export its rows as CSV. A history of `hysteron serve`: hysteron history FILE --out log.csv; a bag of ROS 2: open it in "
+     nullptr, "export its rows as CSV. A history of `hysteron serve`: `hysteron history FILE --out log.csv`; a bag of ROS 2: open it in "
      "PlotJuggler; another: sqlite3 -header -csv FILE 'SELECT * FROM TABLE' > log.csv."},
     {"Excel workbook", [](std::string_view bytes, std::string_view ending) {
        return ending == "xlsx" || ending == "xlsm" || ending == "ods" || (ending == "xls" && !begins(bytes, "<")) || begins(bytes, "\xD0\xCF\x11\xE0");
@@ -163,7 +163,7 @@ constexpr auto formats = std::to_array<Format>({
     {"text of Prometheus", [](std::string_view bytes, std::string_view) { return begins(bytes, "# HELP ") || begins(bytes, "# TYPE "); },
      nullptr, "export the signals as CSV with their times: the CSV of Grafana, for instance."},
     {"a log of ArduPilot", [](std::string_view bytes, std::string_view) { return begins(bytes, "FMT, ") || begins(bytes, "\xA3\x95\x80"); },
-     nullptr, "write one kind of its messages as CSV: mavlogdump.py --types PIDR --format csv log.bin > log.csv; or open it in PlotJuggler."},
+     nullptr, "write one kind of its messages as CSV: `mavlogdump.py --types PIDR --format csv log.bin > log.csv`; or open it in PlotJuggler."},
     {"Teleplot, a signal in each line", [](std::string_view bytes, std::string_view) { return is_teleplot(bytes.substr(0, bytes.find('\n'))); },
      nullptr, "export the signals as CSV from Teleplot, or print them in one line: t:0.001,u:1.5,y:2.5."},
     {"YAML", [](std::string_view bytes, std::string_view ending) { return ending == "yaml" || ending == "yml" || begins(bytes, "%YAML"); },

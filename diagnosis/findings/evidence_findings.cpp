@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -126,11 +127,13 @@ void tell(const Evidence& evidence, const Rules& rules, Diagnosis& result) {
   result.effects = std::move(effects);
   result.rivals.clear();
   for (const SetFinding& set : evidence.sets) {
-    Rival rival{.support = std::log(std::max(set.probability, 1e-12) / std::max(first.probability, 1e-12)),
+    Rival rival{.improved_rms = &set == &first ? result.gap.improved : std::numeric_limits<double>::quiet_NaN(),
+                .support = std::log(std::max(set.probability, 1e-12) / std::max(first.probability, 1e-12)),
                 .probability = set.probability};
     for (const LawFinding& law : set.laws) {
       rival.effects.push_back(law.effect);
       rival.edges.push_back(law.edge);
+      rival.parameters += law.values.size();
     }
     if (set.probability >= rules[policy::rival] || &set == &first) {
       result.rivals.push_back(std::move(rival));

@@ -151,9 +151,10 @@ TEST(SyntaxError, Declarations) {
   EXPECT_THAT(in_section("T : HY_TABLE := (X := [0.0, [1.0]]);"), ElementsAre("126 3:29+1"));
   EXPECT_THAT(in_section("T : HY_TABLE := (X := []);"), ElementsAre("102 3:24+1"));
   EXPECT_THAT(in_section("T : HY_GAIN := (K := 1.0, 2.0);"), ElementsAre("118 3:27+3"));
-  EXPECT_THAT(errors("FUNCTION_BLOCK F VAR_GLOBAL X : LREAL; END_VAR VAR Y : BOOL; END_VAR "
-                     "VAR_INPUT CONSTANT Z : BOOL; END_VAR END_FUNCTION_BLOCK"),
-              ElementsAre("112 1:18+10", "112 1:80+8"));
+  EXPECT_THAT(errors("FUNCTION_BLOCK F VAR_GLOBAL X : LREAL; END_VAR VAR Y : BOOL; END_VAR END_FUNCTION_BLOCK"),
+              ElementsAre("112 1:18+10"));
+  EXPECT_THAT(errors("FUNCTION_BLOCK F VAR Y : BOOL; END_VAR VAR_INPUT CONSTANT Z : BOOL; END_VAR END_FUNCTION_BLOCK"),
+              ElementsAre("112 1:50+8"));
 }
 
 TEST(SyntaxError, PartsThatDoNotEnd) {

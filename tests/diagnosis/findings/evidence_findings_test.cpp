@@ -61,6 +61,19 @@ TEST(EvidenceFindings, TheSentenceHasSizesShareNextBestAndRest) {
             "(probability 0.98; next best play, 54 %). The rest, 20 %, no effect of the library explains.");
 }
 
+/// Of a set that is not the one in `improved.st` no run is kept: what it would leave is not known, and is not 0.
+TEST(EvidenceFindings, WhatASetLeavesIsKnownOfTheOneThatIsKept) {
+  Diagnosis found;
+  found.gap.improved = 0.2;
+  found.evidence = of_friction("N");
+  found.evidence.sets.push_back({.laws = {{.effect = "backlash", .family = "play", .edge = "V"}}, .probability = 0.1});
+  tell(found.evidence, {}, found);
+  ASSERT_EQ(found.rivals.size(), 2U);
+  EXPECT_EQ(found.rivals[0].improved_rms, 0.2);
+  EXPECT_EQ(found.rivals[0].parameters, 3U);
+  EXPECT_TRUE(std::isnan(found.rivals[1].improved_rms));
+}
+
 TEST(EvidenceFindings, ConfidenceIsTheProbabilityTimesTheCorrelationWithWhatIsMissing) {
   EXPECT_NEAR(told("N").confidence, 0.98 * std::sqrt(0.8), 1e-12);
 }

@@ -56,12 +56,7 @@ void BodyParser::section(body::Unit& unit, FunctionBlock* block, std::size_t ind
   while (!is("END_VAR") && !is(Symbol::End) && !starts_section() && now().keyword != Keyword::EndFunctionBlock) {
     const auto begin = now().offset;
     const auto first = list.size();
-    if (!declaration(role, list)) {
-      list.resize(first);
-      while (!is("END_VAR") && !is(Symbol::End) && !accept(Symbol::Semicolon)) {
-        advance();
-      }
-    }
+    declaration_or_nothing(role, list);
     if (block == nullptr || external) {
       continue;
     }
@@ -79,11 +74,26 @@ void BodyParser::section(body::Unit& unit, FunctionBlock* block, std::size_t ind
                              .first_variable = first,
                              .variable_count = unit.declarations.size() - first});
   }
+  end_section();
+  accept(Symbol::Semicolon);
+}
+
+void BodyParser::end_section() {
   if (!accept("END_VAR")) {
     reporter_.error(error::missing_end, span_of(now()), "This section has no END_VAR.",
                     "Write END_VAR behind its last declaration.");
   }
-  accept(Symbol::Semicolon);
+}
+
+/// What cannot be read is passed over, up to the next one.
+void BodyParser::declaration_or_nothing(Role role, std::vector<body::Declaration>& list) {
+  const auto first = list.size();
+  if (!declaration(role, list)) {
+    list.resize(first);
+    while (!is("END_VAR") && !is(Symbol::End) && !accept(Symbol::Semicolon)) {
+      advance();
+    }
+  }
 }
 
 bool BodyParser::declaration(Role role, std::vector<body::Declaration>& list) {
@@ -118,9 +128,11 @@ bool BodyParser::declaration(Role role, std::vector<body::Declaration>& list) {
 /// 0..9
 bool BodyParser::bounds(body::Label& one) {
   one.low = expression();
-  if (one.low == no_expression || !expect(Symbol::Dot, "`..` between the bounds")) {
-    return false;
-  }
+  return one.low != no_expression && expect(Symbol::Dot, "`..` between the bounds") && upper_bound(one);
+}
+
+/// Behind the first point of `0..9`.
+bool BodyParser::upper_bound(body::Label& one) {
   if (is(Symbol::Number) && word(now()).front() == '.') {  // 0..9 is read as 0, . and .9
     one.high = number();
   } else {
@@ -276,18 +288,9 @@ void BodyParser::globals() {
         "VAR_IN_OUT.");
   }
   while (!is("END_VAR") && !is(Symbol::End)) {
-    const auto first = library_.globals.size();
-    if (!declaration(Role::Constant, library_.globals)) {
-      library_.globals.resize(first);
-      while (!is("END_VAR") && !is(Symbol::End) && !accept(Symbol::Semicolon)) {
-        advance();
-      }
-    }
+    declaration_or_nothing(Role::Constant, library_.globals);
   }
-  if (!accept("END_VAR")) {
-    reporter_.error(error::missing_end, span_of(now()), "This section has no END_VAR.",
-                    "Write END_VAR behind its last declaration.");
-  }
+  end_section();
 }
 
 void BodyParser::types() {

@@ -321,16 +321,7 @@ bool BodyParser::label(body::Label& one) {
   if (one.low == no_expression) {
     return false;
   }
-  if (!accept(Symbol::Dot)) {
-    return true;
-  }
-  if (is(Symbol::Number) && word(now()).front() == '.') {  // 1..4 is read as 1, . and .4
-    one.high = number();
-  } else {
-    accept(Symbol::Dot);
-    one.high = expression();
-  }
-  return one.high != no_expression;
+  return !accept(Symbol::Dot) || upper_bound(one);
 }
 
 bool BodyParser::case_statement(body::Case& node) {

@@ -35,9 +35,12 @@ class BodyParser {
   void sections(body::Unit& unit, FunctionBlock* block, std::size_t index, std::vector<Declaration>* declarations);
   void section(body::Unit& unit, FunctionBlock* block, std::size_t index, std::vector<Declaration>* declarations);
   bool declaration(body::Role role, std::vector<body::Declaration>& list);
+  void declaration_or_nothing(body::Role role, std::vector<body::Declaration>& list);
+  void end_section();
   bool type(body::TypeSpec& spec);
   bool array_type(body::TypeSpec& spec);
   bool bounds(body::Label& one);
+  bool upper_bound(body::Label& one);
   bool enumeration(body::TypeSpec& spec);
   bool structure(body::TypeSpec& spec);
   bool initial(body::Initial& value);

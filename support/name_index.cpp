@@ -1,7 +1,6 @@
 #include "support/name_index.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
 #include "support/names.hpp"
@@ -31,54 +30,29 @@ bool same(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::size_t NameIndex::slot_of(std::string_view name, std::uint32_t hash) const {
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t at = hash & mask;
-  while (slots_[at].entry != free && !(slots_[at].hash == hash && same(name_of(entries_[slots_[at].entry]), name))) {
-    at = (at + 1) & mask;
-  }
-  return at;
+  return slots_.find(hash, [&](std::uint32_t entry) { return same(name_of(entries_[entry]), name); });
 }
 
 bool NameIndex::add(std::string_view name, std::uint32_t number) {
   const std::uint32_t hash = hash_of(name);
   const std::size_t at = slot_of(name, hash);
-  if (slots_[at].entry != free) {
+  if (!slots_[at].is_free()) {
     return false;
   }
-  slots_[at] = {hash, static_cast<std::uint32_t>(entries_.size())};
+  slots_.fill(at, {hash, static_cast<std::uint32_t>(entries_.size())});
   entries_.push_back({static_cast<std::uint32_t>(names_.size()), static_cast<std::uint32_t>(name.size()), number});
   names_ += name;
-  if (2 * entries_.size() > slots_.size()) {
-    grow(2 * slots_.size());
-  }
   return true;
 }
 
 const std::uint32_t* NameIndex::find(std::string_view name) const {
-  const Slot& slot = slots_[slot_of(name, hash_of(name))];
-  return slot.entry == free ? nullptr : &entries_[slot.entry].number;
+  const HashSlots::Slot& slot = slots_[slot_of(name, hash_of(name))];
+  return slot.is_free() ? nullptr : &entries_[slot.entry].number;
 }
 
 void NameIndex::reserve(std::size_t names) {
   entries_.reserve(names);
-  if (2 * names > slots_.size()) {
-    grow(std::bit_ceil(2 * names));
-  }
-}
-
-void NameIndex::grow(std::size_t slots) {
-  std::vector<Slot> larger(slots);
-  const std::size_t mask = slots - 1;
-  for (const Slot& slot : slots_) {
-    if (slot.entry != free) {
-      std::size_t at = slot.hash & mask;
-      while (larger[at].entry != free) {
-        at = (at + 1) & mask;
-      }
-      larger[at] = slot;
-    }
-  }
-  slots_ = std::move(larger);
+  slots_.reserve(names);
 }
 
 }  // namespace hysteron

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "support/hash_slots.hpp"
+
 namespace hysteron {
 
 class NameIndex {
@@ -32,22 +34,15 @@ class NameIndex {
     std::uint32_t length = 0;
     std::uint32_t number = 0;
   };
-  struct Slot {
-    std::uint32_t hash = 0;
-    std::uint32_t entry = free;
-  };
-  static constexpr std::uint32_t free = 0xFFFFFFFF;
-
   /// Where a name is, or where it would stand.
   [[nodiscard]] std::size_t slot_of(std::string_view name, std::uint32_t hash) const;
   [[nodiscard]] std::string_view name_of(const Entry& entry) const {
     return std::string_view(names_).substr(entry.begin, entry.length);
   }
-  void grow(std::size_t slots);
 
   std::string names_{};  ///< one behind the other, as they were written
   std::vector<Entry> entries_{};
-  std::vector<Slot> slots_ = std::vector<Slot>(16);  ///< a power of two, at most half of it taken
+  HashSlots slots_{};
 };
 
 }  // namespace hysteron

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "support/hash_slots.hpp"
+
 namespace hysteron {
 
 class NameTable {
@@ -27,17 +29,9 @@ class NameTable {
   [[nodiscard]] std::size_t size() const { return names_.size(); }
 
  private:
-  struct Slot {
-    std::uint32_t hash = 0;
-    std::uint32_t number = free;
-  };
-  static constexpr std::uint32_t free = 0xFFFFFFFF;
-
-  void grow();
-
   std::pmr::monotonic_buffer_resource memory_;
   std::vector<std::string_view> names_;
-  std::vector<Slot> slots_ = std::vector<Slot>(64);  ///< a power of two, at most half of it taken
+  HashSlots slots_{};
 };
 
 }  // namespace hysteron

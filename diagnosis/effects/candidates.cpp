@@ -352,8 +352,8 @@ class Enumeration {
   /// Whether a converter or a logger is put between two parts of the machine: where no signal is that an input gives or
   /// an output shows.
   [[nodiscard]] bool is_displaced(const Candidate& candidate) const {
-    const auto family = std::ranges::find(family_texts, candidate.kind.family, &FamilyText::name);
-    if (candidate.kind.change != Change::Insert || family == family_texts.end() || !family->of_a_port) {
+    const FamilyText* const family = text_of_family(candidate.kind);
+    if (candidate.kind.change != Change::Insert || family == nullptr || !family->of_a_port) {
       return false;
     }
     const Wire signal = before_effects(candidate, candidate.input);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "blocks/families.hpp"
 #include "codegen/graph/definition.hpp"
 #include "codegen/trace/block_type.hpp"
 
@@ -76,6 +77,9 @@ struct EffectKind {
   /// Whether it is a dry friction, which holds at rest: it has a travel from there to sliding.
   [[nodiscard]] bool slides() const { return std::ranges::any_of(parameters, &EffectParameter::is_travel); }
 };
+
+/// What its family is; null where the effect is one by itself.
+[[nodiscard]] const FamilyText* text_of_family(const EffectKind& kind);
 
 /// Those of the catalogue and of the definitions of a file, each with at least one strength, sorted by identifier.
 [[nodiscard]] std::vector<EffectKind> effect_kinds(const Definitions& definitions);

@@ -45,8 +45,8 @@ bool may_act_on(const EffectKind& kind, const Space::Place& place) {
   if (kind.of_record && !place.is_port) {
     return false;
   }
-  const auto family = std::ranges::find(family_texts, kind.family, &FamilyText::name);
-  if (place.is_balance && family != family_texts.end() && family->of_a_part) {
+  const FamilyText* const family = text_of_family(kind);
+  if (place.is_balance && family != nullptr && family->of_a_part) {
     return false;
   }
   const Quantity quantity = quantity_of(place.unit);

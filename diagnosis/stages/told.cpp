@@ -136,8 +136,8 @@ void add_improved(const Judged& judged, const Explanation& kept, Diagnosis& resu
       improved_file(record.task, parameters::by_element(record.input.file, record.input.program.graph), kept);
 }
 
-std::vector<FrictionCurve> frictions_of(const Cleaned& record, const Explanation& kept) {
-  const Program program = fitted_program(record.task, without_noise(kept, record.top));
+std::vector<FrictionCurve> frictions_of(const Cleaned& record, const Explanation& quiet) {
+  const Program program = fitted_program(record.task, quiet);
   Diagnostics unused;
   return friction_curves(program, drive_from(record.task.records.front(), program, {}, unused));
 }
@@ -169,7 +169,8 @@ Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOption
   }
   result.traces = traces_of(record.task, result.gaps, record.nominal, calibrated.fit.residuals, kept.fit.residuals);
   draw_over_inputs(record.task, kept.variant.program->graph, judged.evidence, result.traces);
-  result.frictions = frictions_of(record, kept);
+  const Explanation quiet = without_noise(kept, record.top);
+  result.frictions = frictions_of(record, quiet);
   add_improved(judged, kept, result);
   add_outlook({.task = record.task,
                .nominal = *record.given,
@@ -185,8 +186,7 @@ Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOption
                        : summary_of(result, materiality_of(record, options).is_too_small(kept.fit.residuals));
   result.edges =
       where(record.task, judged.searched->search, record.top, record.unused, result.effects, options.threads);
-  result.maps =
-      maps_of(record.task, without_noise(calibrated, record.top), without_noise(kept, record.top), answer.gap_output);
+  result.maps = maps_of(record.task, without_noise(calibrated, record.top), quiet, answer.gap_output);
   return result;
 }
 

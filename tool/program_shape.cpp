@@ -14,6 +14,7 @@
 #include "codegen/graph/sample_time.hpp"
 #include "codegen/graph/units.hpp"
 #include "codegen/program_hash.hpp"
+#include "runtime/task/layout_text.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -125,8 +126,7 @@ ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
   }
   shape.relations = relations_of(graph);
   shape.state = state_of(program, units, float32);
-  shape.layout = fmt::format("{}-{}{}", program_hash(plain), engine == Engine::compiled ? "compiled" : "interpreter",
-                             float32 ? "-float32" : "");
+  shape.layout = runtime::layout_text(program_hash(plain), engine == Engine::compiled, float32);
   return shape;
 }
 

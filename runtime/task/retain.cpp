@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runtime/task/carry.hpp"
+#include "runtime/task/layout_text.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -145,20 +146,6 @@ Slot decode_slot(std::span<const std::byte> bytes) {
   }
   return slot;
 }
-
-namespace {
-
-/// A layout without its engine: engines of one diagram have the same values, which lie in other bytes.
-std::string diagram_of(std::string layout) {
-  for (const std::string_view engine : {"-interpreter", "-compiled"}) {
-    if (const auto at = layout.find(engine); at != std::string::npos) {
-      layout.erase(at, engine.size());
-    }
-  }
-  return layout;
-}
-
-}  // namespace
 
 Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy policy, const RetainChecks& checks) {
   std::array<Slot, 2> slots;

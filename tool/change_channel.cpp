@@ -58,8 +58,24 @@ Descriptor new_socket() {
   return Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
 }
 
+/// One that its owner alone may open, before it has a name: at no moment may another user. Not open where there is
+/// none.
+Descriptor new_private_socket() {
+  Descriptor socket = new_socket();
+  return socket.is_open() && ::fchmod(socket.number(), S_IRUSR | S_IWUSR) == 0 ? std::move(socket) : Descriptor{};
+}
+
 bool connect_to(const Descriptor& socket, const sockaddr_un& address) {
   return ::connect(socket.number(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+}
+
+/// Nothing where none is there.
+std::optional<FileIdentity> file_at(const std::string& path) {
+  struct stat found {};
+  if (::lstat(path.c_str(), &found) != 0) {
+    return {};
+  }
+  return FileIdentity{.device = found.st_dev, .number = found.st_ino};
 }
 
 bool is_own_user(const Descriptor& peer) {
@@ -161,15 +177,14 @@ ChangeListener::ChangeListener(const std::string& path, const Place& place, Answ
     : path_(path),
       answer_(std::move(answer)),
       missing_(std::move(missing)),
-      socket_(new_socket()),
+      socket_(new_private_socket()),
       end_(::eventfd(0, EFD_CLOEXEC)) {
   const auto address = address_of(path);
   if (!address) {
     refuse_socket(path, place, "the name is too long, or empty");
   }
   require_free(path, place, *address);
-  // Before it has a name: at no moment may another user open it.
-  if (!socket_.is_open() || !end_.is_open() || ::fchmod(socket_.number(), S_IRUSR | S_IWUSR) != 0) {
+  if (!socket_.is_open() || !end_.is_open()) {
     refuse_socket(path, place, problem_text(errno));
   }
   const int problem = listen();
@@ -178,18 +193,21 @@ ChangeListener::ChangeListener(const std::string& path, const Place& place, Answ
     refuse_socket(path, place, problem_text(problem));
   }
   if (!listens_) {
-    runtime::tell("Online change", fmt::format("there can be no socket {} yet: {}. It is tried again every {} s; the "
-                                               "control goes on.",
-                                               path, problem_text(problem), between_tries.count()));
-    if (missing_) {
-      missing_(true);
-    }
+    miss(fmt::format("there can be no socket {} yet: {}", path, problem_text(problem)));
   }
   thread_ = std::thread([this] { serve(); });
 }
 
+void ChangeListener::miss(const std::string& why) const {
+  runtime::tell("Online change",
+                fmt::format("{}. It is tried again every {} s; the control goes on.", why, between_tries.count()));
+  if (missing_) {
+    missing_(true);
+  }
+}
+
 /// What a task that is gone has left is removed. 0, or errno.
-int ChangeListener::listen() const {
+int ChangeListener::listen() {
   const auto address = address_of(path_);
   struct stat found {};
   if (::lstat(path_.c_str(), &found) == 0 && S_ISSOCK(found.st_mode) && ::unlink(path_.c_str()) != 0) {
@@ -199,6 +217,7 @@ int ChangeListener::listen() const {
       ::listen(socket_.number(), 4) != 0) {
     return errno;
   }
+  named_ = file_at(path_);
   return 0;
 }
 
@@ -210,7 +229,10 @@ bool ChangeListener::listens_at_last() {
     if (wait.revents != 0) {
       return false;
     }
-    if (listen() == 0) {
+    if (!socket_.is_open()) {
+      socket_ = new_private_socket();
+    }
+    if (socket_.is_open() && listen() == 0) {
       runtime::tell("Online change", fmt::format("the socket {} is there now.", path_), runtime::Weight::notice);
       if (missing_) {
         missing_(false);
@@ -225,7 +247,7 @@ ChangeListener::~ChangeListener() {
   const std::uint64_t one = 1;
   [[maybe_unused]] const ssize_t written = ::write(end_.number(), &one, sizeof(one));
   thread_.join();
-  if (listens_) {
+  if (listens_ && file_at(path_) == named_) {  // the name may be another task's by now
     (void)::unlink(path_.c_str());
   }
 }
@@ -233,15 +255,19 @@ ChangeListener::~ChangeListener() {
 void ChangeListener::serve() {
   // What is compiled here must not be felt by the task where that has no real-time scheduling.
   (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10);
-  if (!listens_ && !listens_at_last()) {
-    return;
-  }
   for (;;) {
+    if (!listens_ && !listens_at_last()) {
+      return;
+    }
     std::array<pollfd, 2> wait{pollfd{.fd = socket_.number(), .events = POLLIN, .revents = 0},
                                pollfd{.fd = end_.number(), .events = POLLIN, .revents = 0}};
-    (void)::poll(wait.data(), wait.size(), -1);
+    const int ready = ::poll(wait.data(), wait.size(), static_cast<int>(milliseconds(between_tries).count()));
     if (wait[1].revents != 0) {
       return;
+    }
+    if (ready == 0) {
+      look_after_name();
+      continue;
     }
     const Descriptor client(::accept4(socket_.number(), nullptr, nullptr, SOCK_CLOEXEC));
     if (client.is_open() && is_own_user(client)) {
@@ -249,6 +275,21 @@ void ChangeListener::serve() {
     } else if (!client.is_open()) {
       std::this_thread::sleep_for(milliseconds(100));  // no descriptor is left
     }
+  }
+}
+
+/// A name that somebody deleted, as a clean-up of old files does, is made anew.
+void ChangeListener::look_after_name() {
+  if (file_at(path_)) {
+    return;
+  }
+  socket_ = new_private_socket();  // a socket can be given a name once
+  const int problem = socket_.is_open() ? listen() : errno;
+  listens_ = problem == 0;
+  if (listens_) {
+    runtime::tell("Online change", fmt::format("the socket {} was deleted, and is there again.", path_));
+  } else {
+    miss(fmt::format("the socket {} was deleted, and there can be no other yet: {}", path_, problem_text(problem)));
   }
 }
 

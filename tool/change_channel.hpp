@@ -5,7 +5,10 @@
 // answer; before it there may be lines that tell what is being done: {"progress": "compiles the new version"}.
 #pragma once
 
+#include <sys/types.h>
+
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -14,6 +17,14 @@
 #include "support/diagnostic.hpp"
 
 namespace hysteron::tool {
+
+/// Which file a name stands for.
+struct FileIdentity {
+  dev_t device = 0;
+  ino_t number = 0;
+
+  bool operator==(const FileIdentity&) const = default;
+};
 
 /// The task's side; requests are answered one after the other, in a thread of their own.
 class ChangeListener {
@@ -24,7 +35,8 @@ class ChangeListener {
   /// Told whether there is no socket, where that changes.
   using Missing = std::function<void(bool)>;
 
-  /// A socket of a task that is gone is replaced. Where the disk takes none now, it is tried again. Throws InputError
+  /// A socket of a task that is gone is replaced. Where the disk takes none now, or somebody deletes it, it is tried
+  /// again. Throws InputError
   /// at `place`: HY815 where another task listens there, HY854 where there can be no socket.
   ChangeListener(const std::string& path, const Place& place, Answer answer, Missing missing = {});
   /// Waits for the answer that is being made.
@@ -35,8 +47,10 @@ class ChangeListener {
   ChangeListener& operator=(ChangeListener&&) = delete;
 
  private:
-  [[nodiscard]] int listen() const;
+  [[nodiscard]] int listen();
   [[nodiscard]] bool listens_at_last();
+  void look_after_name();
+  void miss(const std::string& why) const;
   void serve();
   void serve_one(const Descriptor& client) const;
 
@@ -45,7 +59,8 @@ class ChangeListener {
   Missing missing_;
   Descriptor socket_{};
   Descriptor end_{};      ///< readable once it ends
-  bool listens_ = false;  ///< of the thread, once there is one
+  bool listens_ = false;  ///< of the thread, once there is one; so are the socket and its name
+  std::optional<FileIdentity> named_{};
   std::thread thread_;
 };
 

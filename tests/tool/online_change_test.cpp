@@ -179,6 +179,24 @@ TEST(OnlineChangeCommand, ACrashJustAfterItLosesNothing) {
               StartsWith("HY815 error: other.toml:4:10: Another task that runs listens on online-change.socket."));
 }
 
+/// A clean-up of old files may delete the name while the task runs; a file that is there by then stays.
+TEST(OnlineChangeCommand, ADeletedSocketComesBack) {
+  const test::Workbench bench;
+  bench.write("stage.st", stage(false));
+  bench.write("run.toml", online_run_file);
+  Served task(bench, "--engine interpreter");
+  ASSERT_TRUE(task.has_begun()) << task.told();
+  std::filesystem::remove(bench.path() / "online-change.socket");
+  EXPECT_EQ(bench.shell("hysteron online-change run.toml --check").code, 2);
+  ASSERT_TRUE(soon([&] { return bench.has("online-change.socket"); })) << task.told();
+  EXPECT_EQ(bench.shell("hysteron online-change run.toml --check").code, 0);
+  EXPECT_THAT(task.told(), HasSubstr("the socket online-change.socket was deleted, and is there again.\n"));
+  std::filesystem::remove(bench.path() / "online-change.socket");
+  bench.write("online-change.socket", "somebody's");
+  task.end(SIGTERM);
+  EXPECT_EQ(bench.read("online-change.socket"), "somebody's");
+}
+
 /// What is refused leaves the task, its version and the files as they are.
 TEST(OnlineChangeCommand, WhatIsRefusedChangesNothing) {
   const test::Workbench bench;

@@ -59,7 +59,7 @@ inline constexpr std::array family_texts{
     FamilyText{Family::Offset, "offset", "a constant that is added"}};
 
 constexpr std::string_view name_of(Family family) {
-  const auto found = std::ranges::find(family_texts, family, &FamilyText::family);
+  const auto* const found = std::ranges::find(family_texts, family, &FamilyText::family);
   return found == family_texts.end() ? std::string_view() : found->name;
 }
 

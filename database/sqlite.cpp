@@ -171,7 +171,7 @@ Statement& Statement::bind(int place, std::int64_t value) {
 Statement& Statement::bind(int place, std::string_view value) {
   // An empty text is a text: a null pointer would be NULL.
   check(sqlite3_bind_text(statement_.get(), place, value.empty() ? "" : value.data(), static_cast<int>(value.size()),
-                          SQLITE_TRANSIENT));  // NOLINT(cppcoreguidelines-pro-type-cstyle-cast): a macro of SQLite
+                          SQLITE_TRANSIENT));  // NOLINT(performance-no-int-to-ptr): a macro of SQLite
   return *this;
 }
 

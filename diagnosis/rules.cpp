@@ -16,7 +16,7 @@ const Threshold& rule_of(const std::string& name) {
   std::string spoken = name;
   std::ranges::replace_if(
       spoken, [](char letter) { return letter == '-' || letter == '_'; }, ' ');
-  const auto found =
+  const auto* const found =
       std::ranges::find_if(policy::all, [&](const Threshold& one) { return one.is_rule() && one.name == spoken; });
   if (found == policy::all.end()) {
     std::vector<std::string_view> rules;

@@ -60,7 +60,7 @@ void set_each(const std::vector<std::string>& texts, std::vector<ExportedAxis>& 
     }
     values.push_back(std::move(value));
   }
-  std::ranges::stable_partition(values, [](const NamedValue& one) { return one.name.empty(); });
+  std::stable_partition(values.begin(), values.end(), [](const NamedValue& one) { return one.name.empty(); });
   for (const NamedValue& value : values) {
     for (ExportedAxis& axis : axes) {
       if (value.name.empty() || value.name == axis.joint) {

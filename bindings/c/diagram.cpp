@@ -64,7 +64,7 @@ parameters::ParameterFile parameters_of(Options& options, parameters::ParameterF
     file = parameters::parse_parameter_file(memory_parameters, text);
   }
   for (const auto& [name, value] : options.members("parameters")) {
-    std::erase_if(file.values, [&](const auto& one) { return equal_ignoring_case(one.path, name); });
+    std::erase_if(file.values, [&name = name](const auto& one) { return equal_ignoring_case(one.path, name); });
     file.values.push_back({.path = name,
                            .value = value_of(name, value),
                            .place = {.file = memory_parameters},

@@ -121,7 +121,7 @@ class Reader {
     result_.version = version == "2.0" ? 2 : 3;
     const pugi::xml_node simulation = root_.child("CoSimulation");
     if (!simulation) {
-      throw std::runtime_error(root_.child("ModelExchange")
+      throw std::runtime_error(!root_.child("ModelExchange").empty()
                                    ? "it offers model exchange alone, and has no solver of its own"
                                    : "it offers no co-simulation");
     }

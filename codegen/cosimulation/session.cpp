@@ -223,7 +223,7 @@ std::string Session::doing() const {
                            number_text(static_cast<double>(steps_ - 1) * view_.head().step));
 }
 
-std::string Session::with_log(std::string cause) const {
+std::string Session::with_log(const std::string& cause) const {
   const std::string log(view_.head().log, strnlen(view_.head().log, longest_path));
   return log.empty() ? cause : cause + " The FMU says: " + log;
 }

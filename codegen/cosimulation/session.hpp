@@ -50,7 +50,7 @@ class Session {
   [[noreturn]] void report_time();
   [[noreturn]] void report_refusal() const;
   [[nodiscard]] std::string doing() const;
-  [[nodiscard]] std::string with_log(std::string cause) const;
+  [[nodiscard]] std::string with_log(const std::string& cause) const;
 
   const Fmu& fmu_;
   std::string instance_;

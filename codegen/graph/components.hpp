@@ -14,9 +14,9 @@ template <class Needs>
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> components_of(std::uint32_t count, const Needs& needs) {
   constexpr auto none = std::numeric_limits<std::uint32_t>::max();
   struct Visit {
-    std::uint32_t node;
-    std::uint32_t next;
-    std::vector<std::uint32_t> needs;
+    std::uint32_t node = 0;
+    std::uint32_t next = 0;
+    std::vector<std::uint32_t> needs{};
   };
   std::vector<std::vector<std::uint32_t>> components;
   std::vector<std::uint32_t> number(count, none);

@@ -6,7 +6,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <ranges>
 #include <tuple>
 
 #include "codegen/graph/body/body.hpp"
@@ -224,18 +223,23 @@ class Reader {
       error(error::bad_annotation, annotation.span, "@family speaks of an effect, and the block names none",
             "Name the effect: @effect sag.");
     }
-    if (const FamilyText* const family =
-            one_of(family_texts, annotation, "a family of effects", "; without @family the effect is one by itself")) {
+    if (const FamilyText* const family = one_of(
+            family_texts, [](const FamilyText&) { return true; }, annotation, "a family of effects",
+            "; without @family the effect is one by itself")) {
       definition.family = family->name;
     }
   }
 
-  /// Of texts the one that an annotation names; null, and an error that lists them, where it names none.
-  template <class Texts>
-  auto one_of(Texts&& texts, const Annotation& annotation, std::string_view what, std::string_view otherwise)
-      -> decltype(&*texts.begin()) {
+  /// Of the texts that an author may name the one that an annotation names; null, and an error that lists them, where
+  /// it names none.
+  template <class Texts, class May>
+  auto one_of(const Texts& texts, May may_name, const Annotation& annotation, std::string_view what,
+              std::string_view otherwise) -> decltype(&*texts.begin()) {
     std::string names;
     for (const auto& one : texts) {
+      if (!may_name(one)) {
+        continue;
+      }
       if (language::same_name(one.name, annotation.value)) {
         return &one;
       }
@@ -405,8 +409,8 @@ class Reader {
   }
 
   void take_role(const Annotation& annotation, Field& field) {
-    if (const RoleText* const role =
-            one_of(role_texts | std::views::filter(&RoleText::stated), annotation, "a role", "")) {
+    if (const RoleText* const role = one_of(
+            role_texts, [](const RoleText& one) { return one.stated; }, annotation, "a role", "")) {
       field.role = role->role;
     }
   }

@@ -73,8 +73,7 @@ void Elaborator::discretise(const Instance& instance, const Declared& declared, 
   // A block that is looked at by itself may leave the sample time to those that use it.
   const double ts = (graph_.sample_time_ns > 0 ? graph_.sample_time() : 1.0) * rate.every;
   HeldSystem held = discretise_held(num, den, ts);
-  for (std::uint32_t i = static_cast<std::uint32_t>(declared.block->inputs.size()); i < declared.block->pin_count();
-       ++i) {
+  for (auto i = static_cast<std::uint32_t>(declared.block->inputs.size()); i < declared.block->pin_count(); ++i) {
     const Field& field = declared.block->pin(i);
     if (graph_.wires[graph_.nodes[part.node].first_wire + i].from != Wire::From::Nothing) {
       continue;

@@ -181,10 +181,10 @@ Wire Lowering::mismatch(language::Span span, std::string_view what, std::initial
   std::string mend =
       fmt::format("It takes {}{}.", names(taken, " or "), taken.size() > 1 ? ", the same on both sides" : "");
   // What is not taken becomes what is beside it, else the first that is taken.
-  const auto stays = std::ranges::find_if(given, is_taken);
+  const auto* const stays = std::ranges::find_if(given, is_taken);
   const bool bits = is_given(Type::Int) && is_taken(Type::Word);
   const Type wanted = stays != given.end() ? *stays : bits ? Type::Word : taken.front();
-  const auto odd = std::ranges::find_if(given, [&](Type type) { return type != wanted; });
+  const auto* const odd = std::ranges::find_if(given, [&](Type type) { return type != wanted; });
   if (!hint.empty()) {
     mend = hint;
   } else if (is_given(Type::Real) && is_given(Type::Int)) {

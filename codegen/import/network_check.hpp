@@ -47,6 +47,6 @@ using Assigners = std::map<std::string, std::vector<const DrawnElement*>>;
 [[nodiscard]] bool hands_back(const DrawnElement& block, std::string_view pin, const Targets& targets);
 
 /// Whether a pin of an instance, by its name in capitals, gets what may change from step to step.
-[[nodiscard]] bool is_driven(const DrawnPou& pou, std::string_view instance, std::string_view pin);
+[[nodiscard]] bool is_driven(const DrawnPou& pou, std::string_view instance, std::string_view name);
 
 }  // namespace hysteron::import

@@ -123,7 +123,7 @@ class Reader {
   }
 
   Refuse refusing(const DrawnElement& element) {
-    return [this, &element](std::string why, std::string mend) { refuse(element, why, std::move(mend)); };
+    return [this, &element](const std::string& why, std::string mend) { refuse(element, why, std::move(mend)); };
   }
 
   void run_function(const DrawnElement& element, State& state) {

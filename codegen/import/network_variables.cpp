@@ -13,7 +13,7 @@ namespace {
 
 /// The first value of a variable, or of an element of it; empty where none is given.
 std::string initial_of(const DrawnVariable& variable, std::optional<std::int64_t> place) {
-  const std::string text = with_known_literals(variable.initial);
+  std::string text = with_known_literals(variable.initial);
   const auto known = known_type(variable.type);
   if (!place || !known) {
     return text;
@@ -102,7 +102,7 @@ std::string NetworkVariables::read(const NameRead& name, const Refuse& refuse) {
   if (!name.place && by_elements_.contains(whole)) {
     return whole_by_elements(*variable, refuse);
   }
-  const std::string text = name.place ? element_name(variable->name, *name.place) : variable->name;
+  std::string text = name.place ? element_name(variable->name, *name.place) : variable->name;
   if (variable->section == DrawnVariable::Section::Both) {
     text_.taken_in.push_back(whole);
     return text;

@@ -202,7 +202,7 @@ class Importer {
   }
 
   /// A network has inputs and outputs alone: what is both becomes one of each, as far as it is read and assigned.
-  std::vector<DrawnVariable> apart(const DrawnPou& pou, const import::NetworkText& network) {
+  static std::vector<DrawnVariable> apart(const DrawnPou& pou, const import::NetworkText& network) {
     using Section = DrawnVariable::Section;
     const auto has = [](const std::vector<std::string>& names, const std::string& name) {
       return std::ranges::find(names, in_capitals(name)) != names.end();

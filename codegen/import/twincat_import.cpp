@@ -85,7 +85,7 @@ class TwincatImport {
       }
     }
     const pugi::xml_node body = pou.child("Implementation").first_child();
-    if (body && std::string_view(body.name()) != "ST") {
+    if (!body.empty() && std::string_view(body.name()) != "ST") {
       refuse(file, body, fmt::format("the body of {} is written in {}", name, body.name()),
              "Only ST is read from a .TcPOU. Export networks as PLCopen XML, or let the editor turn them into ST.");
       return;

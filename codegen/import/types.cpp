@@ -92,7 +92,7 @@ std::string declared_text(const Carried& carried) {
                              : std::string(type_name(carried.type));
 }
 
-std::string real_text(Type type, std::string literal) {
+std::string real_text(Type type, const std::string& literal) {
   const bool is_whole = type == Type::Real && !literal.empty() && literal.find_first_of(".#") == std::string::npos;
   return is_whole ? literal + ".0" : literal;
 }

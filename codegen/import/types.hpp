@@ -41,7 +41,7 @@ struct KnownType {
 [[nodiscard]] std::string declared_text(const Carried& carried);
 
 /// A literal of a type as a diagram has it: 2 for an LREAL is 2.0.
-[[nodiscard]] std::string real_text(Type type, std::string literal);
+[[nodiscard]] std::string real_text(Type type, const std::string& literal);
 
 /// `[1.5, 2.5]` by its elements; empty where the text is no such list.
 [[nodiscard]] std::vector<std::string> elements_of_list(std::string_view text);

@@ -192,10 +192,10 @@ namespace detail {
 /// The lanes, moved by a function that works in place.
 template <class Function>
 HY_INLINE Lanes each(Function* function, const Lanes& x) {
-  alignas(32) std::array<double, lane_count> numbers;
+  alignas(32) std::array<double, lane_count> numbers{};
   __builtin_memcpy(numbers.data(), &x, sizeof(numbers));
   function(numbers.data());
-  Lanes result;
+  Lanes result{};
   __builtin_memcpy(&result, numbers.data(), sizeof(numbers));
   return result;
 }
@@ -235,22 +235,22 @@ HY_INLINE Lanes decayed_part(const Lanes& u) {
   return detail::each(&detail::each_decayed_part, u);
 }
 HY_INLINE Lanes power(const Lanes& base, const Lanes& exponent) {
-  alignas(32) std::array<double, lane_count> numbers;
-  alignas(32) std::array<double, lane_count> exponents;
+  alignas(32) std::array<double, lane_count> numbers{};
+  alignas(32) std::array<double, lane_count> exponents{};
   __builtin_memcpy(numbers.data(), &base, sizeof(numbers));
   __builtin_memcpy(exponents.data(), &exponent, sizeof(exponents));
   detail::each_power(numbers.data(), exponents.data());
-  Lanes result;
+  Lanes result{};
   __builtin_memcpy(&result, numbers.data(), sizeof(numbers));
   return result;
 }
 
 HY_INLINE LaneInts to_int(const Lanes& x) {
-  alignas(32) std::array<double, lane_count> numbers;
-  alignas(16) std::array<std::int32_t, lane_count> integers;
+  alignas(32) std::array<double, lane_count> numbers{};
+  alignas(16) std::array<std::int32_t, lane_count> integers{};
   __builtin_memcpy(numbers.data(), &x, sizeof(numbers));
   detail::each_to_int(numbers.data(), integers.data());
-  LaneInts result;
+  LaneInts result{};
   __builtin_memcpy(&result, integers.data(), sizeof(integers));
   return result;
 }
@@ -287,11 +287,11 @@ HY_INLINE LaneInts operator-(const LaneInts& a) {
 }
 /// By the words of evaluate.hpp.
 HY_INLINE LaneInts int_operation(Op op, const LaneInts& a, const LaneInts& b) {
-  alignas(16) std::array<std::array<std::int32_t, lane_count>, 3> numbers;
+  alignas(16) std::array<std::array<std::int32_t, lane_count>, 3> numbers{};
   __builtin_memcpy(numbers[0].data(), &a, sizeof(a));
   __builtin_memcpy(numbers[1].data(), &b, sizeof(b));
   detail::each_int_operation(op, numbers[0].data(), numbers[1].data(), numbers[2].data());
-  LaneInts result;
+  LaneInts result{};
   __builtin_memcpy(&result, numbers[2].data(), sizeof(result));
   return result;
 }
@@ -345,11 +345,11 @@ HY_INLINE Lanes at(const std::array<Lanes, N>& array, const LaneInts& index) {
   if (detail::are_alike(inside)) {
     return array[static_cast<std::size_t>(inside.lane(0))];
   }
-  alignas(32) std::array<double, lane_count> numbers;
+  alignas(32) std::array<double, lane_count> numbers{};
   for (std::size_t k = 0; k < lane_count; ++k) {
     numbers[k] = array[static_cast<std::size_t>(inside.lane(k))].lane(k);
   }
-  Lanes result;
+  Lanes result{};
   __builtin_memcpy(&result, numbers.data(), sizeof(result));
   return result;
 }

@@ -54,7 +54,7 @@ class Machine {
 
   void set_input(std::size_t input, const Number& value);  ///< of any type: not 0 is TRUE
   /// The same number without derivatives, or in all lanes.
-  void set_input(std::size_t input, double value) requires(!std::is_same_v<Number, double>);
+  void set_input(std::size_t input, double value) requires(!std::is_same_v<NumberOf<S>, double>);
   /// One step: allocates nothing, calls nothing of the system, throws nothing. An FMU among the blocks does all of it:
   /// it works in a process of its own, and throws InputError (HY219, HY750 to HY753) where it cannot go on.
   void step();

@@ -318,7 +318,7 @@ void Machine<S>::set_input(std::size_t input, const Number& value) {
 }
 
 template <class S>
-void Machine<S>::set_input(std::size_t input, double value) requires(!std::is_same_v<Number, double>) {
+void Machine<S>::set_input(std::size_t input, double value) requires(!std::is_same_v<NumberOf<S>, double>) {
   if (program_->graph.inputs[input].type == Type::Real) {
     run_table<S>().constant(memory_.get() + inputs_[input], value);
   } else {

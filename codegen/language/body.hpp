@@ -58,7 +58,7 @@ struct Expression {
 };
 
 struct Statement;
-using Statements = std::vector<Statement>;
+using Statements = std::vector<Statement>;  // members of it have no {}, which would need a complete Statement here
 
 struct Assign {
   Access target{};
@@ -71,11 +71,11 @@ struct Invoke {
 };
 struct Branch {
   ExpressionId condition = no_expression;
-  Statements statements{};
+  Statements statements;
 };
 struct If {
   std::vector<Branch> branches{};
-  Statements otherwise{};
+  Statements otherwise;
 };
 struct Label {
   ExpressionId low = no_expression;
@@ -83,25 +83,25 @@ struct Label {
 };
 struct Arm {
   std::vector<Label> labels{};
-  Statements statements{};
+  Statements statements;
 };
 struct Case {
   ExpressionId selector = no_expression;
   std::vector<Arm> arms{};
-  Statements otherwise{};
+  Statements otherwise;
 };
 struct For {
   Name variable{};
   ExpressionId from = no_expression;
   ExpressionId to = no_expression;
   ExpressionId by = no_expression;
-  Statements statements{};
+  Statements statements;
 };
 /// WHILE, which is tested before each round, or REPEAT, which is tested behind it and ends where its condition holds.
 struct Loop {
   ExpressionId condition = no_expression;
   bool tested_first = true;
-  Statements statements{};
+  Statements statements;
 };
 enum class Jump : std::uint8_t { Return, Exit, Continue };
 
@@ -110,14 +110,22 @@ struct Statement {
   Span span{};
 };
 
+struct InitialMember;
+
 /// `1.0`, `[1, 2, 3(0)]`, `(A := 1)`.
 struct Initial {
   ExpressionId value = no_expression;
   std::vector<Initial> elements{};
-  std::vector<std::pair<Name, Initial>> members{};
+  std::vector<InitialMember> members;
   ExpressionId repeat = no_expression;  ///< of an element: 3(0)
   Span span{};
   [[nodiscard]] bool given() const { return value != no_expression || !elements.empty() || !members.empty(); }
+};
+
+/// `A := 1`
+struct InitialMember {
+  Name name{};
+  Initial initial{};
 };
 
 struct Declaration;
@@ -125,7 +133,7 @@ struct Declaration;
 struct TypeSpec {
   Name name{};                                                      ///< INT, MOTOR, of an array that of its elements
   std::vector<std::pair<ExpressionId, ExpressionId>> dimensions{};  ///< 0..9, 1..3
-  std::vector<Declaration> fields{};                                ///< STRUCT
+  std::vector<Declaration> fields;                                  ///< STRUCT
   std::vector<std::pair<Name, ExpressionId>> values{};              ///< (OFF, ON := 4)
   Label subrange{};                                                 ///< INT (0..100)
 };

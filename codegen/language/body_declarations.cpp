@@ -263,7 +263,7 @@ bool BodyParser::initial(body::Initial& value) {
     right = value.value != no_expression;
     // The older form of a list: A : ARRAY[0..2] OF INT := 1, 2, 3;
     if (right && is(Symbol::Comma) && ahead(2).symbol != Symbol::Assign && depth_ == 0) {
-      value.elements.push_back({.value = std::exchange(value.value, no_expression)});
+      value.elements.emplace_back().value = std::exchange(value.value, no_expression);
       while (right && accept(Symbol::Comma)) {
         right = element(value);
       }

@@ -15,7 +15,7 @@ namespace hysteron::parameters {
 /// diagram. Reports, at their places in the file, HY603 for a name that the diagram does not have, HY604 for a value of
 /// another type or length, HY214 for one outside of its range, or that cannot stand beside the
 /// other parameters of its block.
-void apply(const ParameterFile& file, Graph& graph, Diagnostics& diagnostics);
+void apply(const ParameterFile& as_written, Graph& graph, Diagnostics& diagnostics);
 
 /// The same; throws InputError with everything that was reported.
 void apply(const ParameterFile& file, Graph& graph);
@@ -24,8 +24,8 @@ void apply(const ParameterFile& file, Graph& graph);
 std::optional<InitialState> find_state(const Graph& graph, std::string_view path, const Place& place,
                                        Diagnostics& diagnostics);
 
-/// A number as the value that a field takes: TRUE of a BOOL is 1. One that the field cannot take stays a real number, for
-/// the message.
+/// A number as the value that a field takes: TRUE of a BOOL is 1. One that the field cannot take stays a real number,
+/// for the message.
 [[nodiscard]] Value value_for(const Field& field, double number);
 
 /// Why a parameter cannot take a number, as `must be above 0`; empty where it can.

@@ -89,7 +89,8 @@ class GoalReader : private SettingsReader {
         goal_.plants = names_of(key, node, R"(plants = ["light.toml", "heavy.toml"])", is_column);
       } else if (key.str() == "limits") {
         read_limits(key, node);
-      } else if (const auto text = std::ranges::find(text_keys, key.str(), &TextKey::name); text != text_keys.end()) {
+      } else if (const auto* const text = std::ranges::find(text_keys, key.str(), &TextKey::name);
+                 text != text_keys.end()) {
         goal_.*text->place = name_of(key, node, text->example, text->is_name);
       } else {
         read_number(key, node, *std::ranges::find(number_keys, key.str(), &NumberKey::name));

@@ -48,7 +48,8 @@ void sort_by_place(std::vector<Item>& items) {
 }
 
 /// What is read and said, before the reader that refers to it.
-struct Reading {
+class Reading {
+ protected:
   ParameterFile result_{};
   Diagnostics found_{};
 };

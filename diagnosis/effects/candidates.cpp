@@ -251,8 +251,7 @@ class Enumeration {
   /// Puts a block between the effect's first further input and what drives it; gives the name of that block.
   std::string put_between(const std::string& block, const std::string& what, const Edge& edge,
                           Insertion& insertion) const {
-    const std::string name =
-        free_name(source_->blocks[edge.definition], fmt::format("{}_{}", insertion.instance, what));
+    std::string name = free_name(source_->blocks[edge.definition], fmt::format("{}_{}", insertion.instance, what));
     std::string& driver = insertion.wires.front().second;
     insertion.helpers.push_back({.block = block, .instance = name, .signal = std::exchange(driver, name + ".XOUT")});
     return name;

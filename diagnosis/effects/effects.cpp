@@ -178,8 +178,8 @@ void add_own(const Definition& definition, std::vector<EffectKind>& kinds) {
 }  // namespace
 
 const FamilyText* text_of_family(const EffectKind& kind) {
-  const auto found = std::ranges::find(family_texts, kind.family, &FamilyText::name);
-  return found == family_texts.end() ? nullptr : &*found;
+  const auto* const found = std::ranges::find(family_texts, kind.family, &FamilyText::name);
+  return found == family_texts.end() ? nullptr : found;
 }
 
 std::vector<EffectKind> effect_kinds(const Definitions& definitions) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <ranges>
 #include <string_view>
 
 #include "codegen/graph/definition.hpp"
@@ -18,7 +17,9 @@ namespace hysteron::diagnosis {
 
 void refuse_undiagnosable(const std::vector<std::string>& wanted, const Program& program) {
   std::vector<std::string> known{"glitches"};
-  std::ranges::copy(std::views::keys(families_by_effect(program)), std::back_inserter(known));
+  for (const auto& [effect, family] : families_by_effect(program)) {
+    known.push_back(effect);
+  }
   std::ranges::sort(known);
   for (const std::string& effect : wanted) {
     if (std::ranges::find(known, effect) == known.end()) {

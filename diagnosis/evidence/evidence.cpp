@@ -427,7 +427,7 @@ Evidence Weighing::told(const Rules& rules, std::size_t view) {
         finding.member = share / probability;
       }
     }
-    const auto holds = [&](const LawSet& set) {
+    const auto holds = [&, &family = family](const LawSet& set) {
       const std::vector<std::string> names = spaces[set.space].search->families_of(set);
       return std::ranges::find(names, family) != names.end();
     };
@@ -435,10 +435,10 @@ Evidence Weighing::told(const Rules& rules, std::size_t view) {
       const Explored& there = spaces[set->space];
       finding.closed = share_of(there, *set, families_by_law(there, *set), family);
       std::vector<std::size_t> own = set->laws;
-      std::erase_if(own, [&](std::size_t i) { return (*there.laws)[i].family != family; });
+      std::erase_if(own, [&, &family = family](std::size_t i) { return (*there.laws)[i].family != family; });
       finding.alone = closed_by(there, std::move(own));
-      const auto law =
-          std::ranges::find_if(set->laws, [&](std::size_t i) { return (*there.laws)[i].family == family; });
+      const auto law = std::ranges::find_if(
+          set->laws, [&, &family = family](std::size_t i) { return (*there.laws)[i].family == family; });
       finding.edge = (*there.laws)[*law].edge;
     }
     result.families.push_back(std::move(finding));

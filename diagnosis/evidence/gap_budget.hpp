@@ -20,7 +20,7 @@ namespace hysteron::diagnosis {
 
 /// Of the signal that is missing, or of one measured output where a space compares at the outputs. Nothing where there
 /// is no gap, or fewer than three blocks.
-[[nodiscard]] std::optional<GapBudget> gap_budget(const Task& task, const Space& space, const std::string& output,
+[[nodiscard]] std::optional<GapBudget> gap_budget(const Task& task, const Space& space, const std::string& name,
                                                   unsigned threads);
 
 }  // namespace hysteron::diagnosis

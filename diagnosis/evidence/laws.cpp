@@ -261,6 +261,7 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
   bar_lines_of(drivers, sample_time, free_hints.frequencies);
   std::vector<Job> jobs;
   std::vector<bool> within_motion;
+  within_motion.reserve(places.size());
   for (const Space::Place& place : places) {
     within_motion.push_back(!place.is_port && carries_velocity(place, drivers));
   }

@@ -17,7 +17,7 @@ struct Quantity {
   bool thermal = false;
   bool number = false;  ///< without dimension, and no angle
 };
-[[nodiscard]] Quantity quantity_of(std::string_view unit);
+[[nodiscard]] Quantity quantity_of(std::string_view text);
 
 /// A friction is a force: on no position, velocity, temperature, and on no number such as a share of power. What
 /// repeats over a position acts on a position or on a force. A balance is no signal that a part passes on: what has

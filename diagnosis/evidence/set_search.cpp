@@ -82,6 +82,7 @@ std::vector<std::string> SetSearch::families_of(const LawSet& one) const {
 
 LawSet SetSearch::fitted(std::vector<std::size_t> list, bool bounded) const {
   std::vector<const Law*> laws;
+  laws.reserve(list.size());
   for (const std::size_t i : list) {
     laws.push_back(&laws_[i]);
   }

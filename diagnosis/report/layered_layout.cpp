@@ -119,7 +119,6 @@ class Layering {
       column_[box] = column;
       last = std::max(last, column);
     }
-    // NOLINTNEXTLINE(modernize-loop-convert): clang 14 does not take std::views::reverse
     for (auto box = order_.rbegin(); box != order_.rend(); ++box) {
       if (boxes_[*box].side == Side::Right) {
         column_[*box] = last;

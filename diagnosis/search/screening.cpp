@@ -5,7 +5,6 @@
 #include <iterator>
 #include <limits>
 #include <optional>
-#include <ranges>
 #include <span>
 #include <utility>
 
@@ -201,8 +200,8 @@ class Screening : private TriedEffect {
     std::vector<VectorXd> first;  // of a line the first mostly holds, of what is bent most are asked for
     for (const VectorXd& shape : shapes) {
       if (std::optional<Promise> one = promised(shape, list, linear)) {
-        const std::size_t asked = linear ? 1 : one->settings.size();
-        std::ranges::copy(one->settings | std::views::take(asked), std::back_inserter(first));
+        const std::size_t asked = linear ? std::min<std::size_t>(one->settings.size(), 1) : one->settings.size();
+        std::copy_n(one->settings.begin(), asked, std::back_inserter(first));
         promises.push_back(std::move(*one));
       }
     }

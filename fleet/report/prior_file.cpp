@@ -1,12 +1,10 @@
 #include "fleet/report/prior_file.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <ranges>
 
 #include "fleet/report/analysis.hpp"
 #include "support/diagnostic.hpp"
@@ -29,10 +27,14 @@ std::string prior_json(const std::vector<Row>& rows, const std::string& group, c
                      "let `hysteron fleet` diagnose some first.");
   }
   if (group.empty() ? groups.size() > 1 : !groups.contains(group)) {
+    std::string names;
+    for (const auto& [name, records] : groups) {
+      names += (names.empty() ? "" : ", ") + name;
+    }
     throw InputError(error::bad_usage, {.file = folder},
                      group.empty() ? "The fleet has several groups, and a prior is of one."
                                    : fmt::format("The fleet has no group {}.", group),
-                     fmt::format("say --group with one of {}.", fmt::join(std::views::keys(groups), ", ")));
+                     fmt::format("say --group with one of {}.", names));
   }
   const auto& [name, diagnosed] = group.empty() ? *groups.begin() : *groups.find(group);
   std::map<std::string, Json> machines;

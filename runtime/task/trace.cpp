@@ -269,6 +269,9 @@ void Trace::write_out(bool last) {
 }
 
 void Trace::write_end() {
+  if (file_.size() == 0) {
+    return;  // there was no room for its head: with an end alone it would be no trace, and refuse the next start
+  }
   const std::array<std::uint64_t, 2> numbers{kept_, dropped() - dropped_before_};
   std::string end;
   append_record(end, TraceKind::end, std::as_bytes(std::span(numbers)));

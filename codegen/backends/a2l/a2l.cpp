@@ -229,7 +229,7 @@ class A2lText {
     if (!is_new) {
       return found->second;
     }
-    const std::string name = own_name(fmt::format("unit.{}{}{}", type_name(type), text.empty() ? "" : ".", text));
+    std::string name = own_name(fmt::format("unit.{}{}{}", type_name(type), text.empty() ? "" : ".", text));
     found->second = name;
     if (type == Type::Bool) {
       const std::string table = own_name("table_BOOL");

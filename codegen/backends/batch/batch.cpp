@@ -278,13 +278,13 @@ class BatchHeader {
   }
 
   void append_structs(std::string& text) const {
-    CppStructs{.graph = graph_,
-               .routine = routine_,
-               .names = layout_.names(),
-               .dialect = batch_dialect,
-               .literal = in_all_lanes,
-               .in_braces = true,
-               .counter_meaning = "of steps, the same for all instances"}
+    CppStructs<decltype(&in_all_lanes)>{.graph = graph_,
+                                        .routine = routine_,
+                                        .names = layout_.names(),
+                                        .dialect = batch_dialect,
+                                        .literal = in_all_lanes,
+                                        .in_braces = true,
+                                        .counter_meaning = "of steps, the same for all instances"}
         .append_to(text);
   }
 

@@ -28,6 +28,7 @@ class StructLayout {
   StructLayout(const Graph& graph, const Routine& routine, std::span<const std::string_view> reserved);
   StructLayout(const StructLayout&) = delete;
   StructLayout& operator=(const StructLayout&) = delete;
+  ~StructLayout() = default;
 
   [[nodiscard]] const Layout& names() const { return layout_; }
 

@@ -116,7 +116,7 @@ class CppHeader {
   void append_structs(std::string& text) const {
     text.reserve(text.size() + 100 * (graph_.parameters.size() + routine_.cells.size()));
     const auto literal = [this](Type type, double value) { return printer_.literal(type, value); };
-    CppStructs{
+    CppStructs<decltype(literal)>{
         .graph = graph_, .routine = routine_, .names = layout_.names(), .dialect = cpp_dialect, .literal = literal}
         .append_to(text);
   }

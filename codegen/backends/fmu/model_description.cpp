@@ -84,8 +84,7 @@ void add_units(pugi::xml_node root, std::span<const FmuVariable> variables) {
     }
   }
   std::ranges::sort(names);
-  const auto rest = std::ranges::unique(names);
-  names.erase(rest.begin(), rest.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   if (names.empty()) {
     return;
   }

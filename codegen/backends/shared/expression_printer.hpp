@@ -49,8 +49,8 @@ inline constexpr std::size_t operation_count = static_cast<std::size_t>(Op::At) 
 class SpellingTable {
  public:
   struct Row {
-    Op op;
-    Spelling spelling;
+    Op op = Op::RealLiteral;
+    Spelling spelling{};
   };
   template <std::size_t N>
   constexpr explicit SpellingTable(const Row (&rows)[N]) {

@@ -97,14 +97,14 @@ std::string PlacePattern::place_text(const PlaceNumber& place, const PlaceWords&
   return text;
 }
 
-std::string PlacePattern::text(const PlaceWords& words, std::string_view sum) const {
+std::string PlacePattern::text(const PlaceWords& words, std::string_view of_sum) const {
   std::string text = between_.front();
   for (std::size_t i = 0; i < places_.size(); ++i) {
     append(text, place_text(places_[i], words), between_[i + 1]);
   }
   for (std::size_t at = text.find(PlacePattern::sum); at != std::string::npos; at = text.find(PlacePattern::sum, at)) {
-    text.replace(at, PlacePattern::sum.size(), sum);
-    at += sum.size();
+    text.replace(at, PlacePattern::sum.size(), of_sum);
+    at += of_sum.size();
   }
   return text;
 }

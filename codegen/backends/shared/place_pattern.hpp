@@ -28,8 +28,8 @@ class PlacePattern {
   /// 1, and the first in column 1, say by how much; they come before those behind them.
   bool takes(std::string_view text, std::size_t row, std::size_t column);
 
-  /// One text for all: a[4 * row + column]. `sum` stands where the name `PlacePattern::sum` was in the text.
-  [[nodiscard]] std::string text(const PlaceWords& words, std::string_view sum = {}) const;
+  /// One text for all: a[4 * row + column]. `of_sum` stands where the name `sum` was in the text.
+  [[nodiscard]] std::string text(const PlaceWords& words, std::string_view of_sum = {}) const;
   static constexpr std::string_view sum = "\1";
 
   /// The pattern whose row 0 is a later row of this one.

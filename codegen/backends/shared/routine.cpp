@@ -11,8 +11,8 @@ namespace {
 
 class RoutineBuilder {
  public:
-  RoutineBuilder(const Program& program, const RoutineOptions& options)
-      : program_(program), graph_(program.graph), options_(options) {}
+  RoutineBuilder(const Program& program, RoutineOptions options)
+      : program_(program), graph_(program.graph), options_(std::move(options)) {}
 
   Routine run() {
     place_cells();

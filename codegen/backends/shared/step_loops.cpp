@@ -390,6 +390,7 @@ void StepWriter::write_rows(std::vector<Row>& rows, std::string& text) {
     }
   }
   std::vector<RowText> texts;
+  texts.reserve(rows.size());
   for (const Row& row : rows) {
     texts.push_back(text_of(row));
   }

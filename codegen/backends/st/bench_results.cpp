@@ -33,6 +33,7 @@ std::span<const BenchResult> bench_results() {
 
 std::vector<StVariable> bench_result_variables() {
   std::vector<StVariable> list;
+  list.reserve(std::size(bench_result_list));
   for (const BenchResult& one : bench_result_list) {
     list.push_back({.name = std::string(one.name), .type = std::string(one.type), .remark = std::string(one.meaning)});
   }

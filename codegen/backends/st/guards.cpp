@@ -22,7 +22,8 @@ Guards::Guards(const Graph& graph, const Routine& routine)
     if (routine.uses[id] == 0) {
       continue;
     }
-    if (value.op == Op::Divide && !is_plain_divisor(value.args[1])) {
+    if ((value.op == Op::Divide && !is_plain_divisor(value.args[1])) ||
+        ((value.op == Op::IntDivide || value.op == Op::IntModulo) && !is_safe_divisor(value.args[1]))) {
       name_with_operands(id, 2);
     } else if (value.op == Op::Power) {
       const PowerForm form = power_form(value);
@@ -31,8 +32,6 @@ Guards::Guards(const Graph& graph, const Routine& routine)
       } else if (form >= PowerForm::NonZero) {
         name_with_operands(id, 2);
       }
-    } else if ((value.op == Op::IntDivide || value.op == Op::IntModulo) && !is_safe_divisor(value.args[1])) {
-      name_with_operands(id, 2);
     } else if (value.op == Op::ToInt) {
       name_with_operands(id, 1);
     } else if (value.op == Op::Log) {

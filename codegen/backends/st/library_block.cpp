@@ -58,7 +58,8 @@ Program wrapper_of_sized(const BlockType& block, std::int64_t sample_time_ns) {
       wire = {Wire::From::Parameter, field.type, 0, static_cast<std::uint32_t>(graph.parameters.size() - 1)};
     }
   }
-  for (std::uint16_t i = 0; i < block.outputs.size(); ++i) {
+  const auto outputs = static_cast<std::uint16_t>(block.outputs.size());
+  for (std::uint16_t i = 0; i < outputs; ++i) {
     graph.outputs.push_back({.name = std::string(block.outputs[i].name),
                              .type = block.outputs[i].type,
                              .wire = {Wire::From::Node, block.outputs[i].type, i, node}});

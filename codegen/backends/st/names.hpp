@@ -20,6 +20,7 @@ class StBlockNames {
                bool keeps_pins);
   StBlockNames(const StBlockNames&) = delete;
   StBlockNames& operator=(const StBlockNames&) = delete;
+  ~StBlockNames() = default;
 
   [[nodiscard]] const Layout& layout() const { return layout_; }
   [[nodiscard]] const StNames& own() const { return own_; }

@@ -110,9 +110,9 @@ class Body {
   std::uint32_t make_leaf(Plain type, double initial, const std::string& path, language::Span span, bool memory);
   void set_initial(Place& place, const language::body::Initial& initial);
   void check_subrange(const Place& place, const Value& value, language::Span span);
-  bool constant(language::ExpressionId id, double& value);
+  bool constant(language::ExpressionId id, double& number);
   /// A delay of one step, and the number of its node, whose first input is not wired yet.
-  std::pair<Value, std::uint32_t> delay(Plain type, double initial, const std::string& name, language::Span span);
+  std::pair<Value, std::uint32_t> delay(Plain plain, double initial, const std::string& name, language::Span span);
   void feed(std::uint32_t delay, const Value& next);
   /// What a leaf held at the end of the step before.
   Value cell(std::uint32_t leaf);
@@ -151,7 +151,7 @@ class Body {
   void again(const language::body::Loop& node, language::Span span, int turn);
   void unrolled(const std::function<void()>& all_rounds);
   Value left();
-  void narrow(language::ExpressionId condition, bool holds);
+  void narrow(language::ExpressionId id, bool holds);
   [[nodiscard]] bool is_plain(language::ExpressionId id) const;
 
   // TIME(), and the timers by it: body_clock.cpp.
@@ -159,12 +159,12 @@ class Body {
   std::int64_t sample_time(language::Span span);
   Value clock(language::Span span);
   Value steps();
-  bool runs_by_clock(Place& place);
+  bool runs_by_clock(Place& place) const;
   void invoke_by_clock(Place& place, language::Span span);
 
   // Expressions: body_values.cpp.
   Value value(language::ExpressionId id);
-  Value literal(const language::body::Literal& literal);
+  Value literal(const language::body::Literal& written);
   Value condition(language::ExpressionId id);
 
   // Calls: body_calls.cpp; functions of the language: body_functions.cpp.

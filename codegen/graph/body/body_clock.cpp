@@ -94,7 +94,7 @@ Value Body::steps() {
 
 /// Whether a timer is called where its block of the library cannot be: under a condition, or more than once in a step.
 /// Then its variables move on where it is called alone, and it reads the clock, as in a PLC.
-bool Body::runs_by_clock(Place& place) {
+bool Body::runs_by_clock(Place& place) const {
   place.clocked = place.clocked || (place.by_clock && conditions_ > 0 && !place.called);
   return place.clocked;
 }

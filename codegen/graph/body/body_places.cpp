@@ -393,7 +393,7 @@ bool Body::index_into(std::vector<Choice>& list, const Value& index, language::S
               ? computer_.truth(true)
               : computer_.binary(op, index, computer_.literal(Plain::Dint, static_cast<double>(i), true));
       chosen.condition = one.condition ? computer_.binary(Operator::And, *one.condition, here) : here;
-      next.push_back(std::move(chosen));
+      next.push_back(chosen);
     }
   }
   if (next.size() > most_choices) {

@@ -53,7 +53,7 @@ Body::State Body::merged(const Value& condition, State yes, State no) {
     if (a && b && a->wire == b->wire) {
       a->low = std::min(a->low, b->low);  // a condition may have narrowed either
       a->high = std::max(a->high, b->high);
-      result.values[leaf] = std::move(a);
+      result.values[leaf] = a;
       continue;
     }
     if (!a && !b) {
@@ -183,7 +183,7 @@ void Body::assign(const syntax::Access& access, const Value& value, language::Sp
   if (list.empty() || !value.valid()) {
     return;
   }
-  const std::string root = upper(access.name.text);
+  const std::string root = language::upper(access.name.text);
   const auto member = std::ranges::find(scope_->members, root, &Member::name);
   if (member != scope_->members.end() && member->role == syntax::Role::Constant) {
     refuse(error::double_drive, access.name.span, fmt::format("'{}' cannot be assigned to", access.name.text),
@@ -199,7 +199,7 @@ void Body::assign(const syntax::Access& access, const Value& value, language::Sp
     const Plain type = leaves_[one.place->leaf].type;
     Value kept;
     if (one.bit >= 0) {
-      const double mask = static_cast<double>(std::int64_t{1} << one.bit);
+      const auto mask = static_cast<double>(std::int64_t{1} << one.bit);
       const Value old = read(one.place->leaf);
       const Value all = computer_.literal(type, static_cast<double>((std::int64_t{1} << info(type).width) - 1) - mask);
       const Value cleared = computer_.binary(Operator::And, old, all);

@@ -49,7 +49,8 @@ const PlainInfo& info(Plain type) {
 }
 
 bool plain_of(std::string_view name, Plain& type) {
-  const auto found = std::ranges::find_if(infos, [&](const PlainInfo& one) { return same_name(one.name, name); });
+  const auto* const found =
+      std::ranges::find_if(infos, [&](const PlainInfo& one) { return same_name(one.name, name); });
   if (found != infos.end()) {
     type = static_cast<Plain>(found - infos.begin());
   }

@@ -241,6 +241,26 @@ TEST(Trace, AFullDiskAtTheStartIsACutThatIsMended) {
   EXPECT_NE(hysteron::test::contents_of(scratch / "trace"), "");
 }
 
+/// Whatever room there is, what stands at the name is a trace or empty: anything else would refuse the next start. An
+/// end is shorter than a head, and may find room where that found none.
+TEST(Trace, AnyRoomLeavesATraceOrNothing) {
+  const std::size_t whole = [] {
+    const hysteron::test::ScratchFolder scratch;
+    return traced_run({.file = scratch / "trace"}, 3).size();
+  }();
+  for (std::size_t room = 0; room <= whole; ++room) {
+    const hysteron::test::ScratchFolder scratch;
+    {
+      const test::FileSizeLimit limit(room);
+      const Accumulator program;
+      Trace trace({.file = scratch / "trace"}, program);
+      trace.finish();
+    }
+    const std::string left = hysteron::test::contents_of(scratch / "trace");
+    ASSERT_TRUE(left.empty() || left.starts_with(trace_first_line)) << room << " bytes: " << left;
+  }
+}
+
 /// What it keeps in memory stays within what it says, whatever comes.
 TEST(Trace, MemoryBeforeATriggerIsBounded) {
   const TraceTrigger trigger{.level = 1e9, .before = 100, .after = 1};

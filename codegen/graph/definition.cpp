@@ -223,22 +223,22 @@ class Reader {
       error(error::bad_annotation, annotation.span, "@family speaks of an effect, and the block names none",
             "Name the effect: @effect sag.");
     }
-    if (const FamilyText* const family = one_of(
-            family_texts, [](const FamilyText&) { return true; }, annotation, "a family of effects",
-            "; without @family the effect is one by itself")) {
+    if (const auto* const family =
+            one_of(family_texts, annotation, "a family of effects", "; without @family the effect is one by itself")) {
       definition.family = family->name;
     }
   }
 
-  /// Of the texts that an author may name the one that an annotation names; null, and an error that lists them, where
-  /// it names none.
-  template <class Texts, class May>
-  auto one_of(const Texts& texts, May may_name, const Annotation& annotation, std::string_view what,
-              std::string_view otherwise) -> decltype(&*texts.begin()) {
+  /// Of texts the one that an annotation names; null, and an error that lists them, where it names none.
+  template <class Text, std::size_t Count>
+  const Text* one_of(const std::array<Text, Count>& texts, const Annotation& annotation, std::string_view what,
+                     std::string_view otherwise) {
     std::string names;
     for (const auto& one : texts) {
-      if (!may_name(one)) {
-        continue;
+      if constexpr (requires { one.stated; }) {
+        if (!one.stated) {
+          continue;
+        }
       }
       if (language::same_name(one.name, annotation.value)) {
         return &one;
@@ -404,14 +404,8 @@ class Reader {
     } else if (is_input(declared) && key == "PARAM") {
       declared.kind = Declared::Kind::Parameter;
     } else if (is_input(declared) && key == "ROLE") {
-      take_role(annotation, field);
-    }
-  }
-
-  void take_role(const Annotation& annotation, Field& field) {
-    if (const RoleText* const role = one_of(
-            role_texts, [](const RoleText& one) { return one.stated; }, annotation, "a role", "")) {
-      field.role = role->role;
+      const RoleText* const role = one_of(role_texts, annotation, "a role", "");
+      field.role = role != nullptr ? role->role : field.role;
     }
   }
 

@@ -156,6 +156,73 @@ TEST(BodyDeclarations, AStructureAtTheBorderIsItsMembers) {
             "'T' at the border of the block is an instance, or has one in it");
 }
 
+const std::string points =
+    "TYPE POINT : STRUCT X : REAL; Y : REAL := 2.0; N : INT; END_STRUCT; ROW : ARRAY[0..2] OF REAL; END_TYPE\n"
+    "FUNCTION MAKE : POINT VAR_INPUT A : REAL; END_VAR MAKE.X := A; MAKE.N := MAKE.N + 1; END_FUNCTION\n"
+    "FUNCTION MOVED : POINT VAR_INPUT P : POINT; D : REAL; END_VAR VAR_OUTPUT OLD : POINT; END_VAR\n"
+    "OLD := P; MOVED := P; MOVED.X := P.X + D; IF P.X > 3.0 THEN RETURN; END_IF; MOVED.Y := P.Y * 2.0; END_FUNCTION\n"
+    "FUNCTION SUM_OF : REAL VAR_INPUT P : POINT; END_VAR SUM_OF := P.X + P.Y; END_FUNCTION\n"
+    "FUNCTION THREE : ROW VAR_INPUT A : REAL; END_VAR VAR I : INT; END_VAR\n"
+    "FOR I := 0 TO 2 DO THREE[I] := A * INT_TO_REAL(I); END_FOR; END_FUNCTION\n"
+    "FUNCTION_BLOCK KEEP VAR_INPUT P : POINT; END_VAR VAR_OUTPUT Q : POINT; END_VAR\n"
+    "Q.X := Q.X + P.X; Q.Y := P.Y; END_FUNCTION_BLOCK\n";
+
+/// Its statements in a block beside those points, with inputs A and K.
+std::string with_points(const std::string& statements) {
+  return points +
+         "FUNCTION_BLOCK F (* @body *) VAR_INPUT A : REAL; K : INT; END_VAR VAR_OUTPUT Y, Z : REAL; END_VAR\n"
+         "VAR P, Q : POINT; R : ROW; L : ARRAY[0..3] OF POINT; I : KEEP; END_VAR\n" +
+         statements + " END_FUNCTION_BLOCK";
+}
+
+/// A FUNCTION gives all of a structure or an array: to a variable, an input, or another FUNCTION.
+TEST(BodyDeclarations, AFunctionGivesAStructure) {
+  using Values = std::vector<double>;
+  const auto of = [](const std::string& statements, const std::vector<std::vector<double>>& rows) {
+    return last_of(with_points(statements), rows);
+  };
+  EXPECT_EQ(of("P := MAKE(A); Y := P.X + P.Y; Z := P.N;", {{5, 0}, {5, 0}}), (Values{7, 1})) << "begins anew";
+  EXPECT_EQ(of("P := MOVED(MOVED(MAKE(A), D := 0.5), 1.0, OLD => Q); Y := P.X + 10 * P.Y; Z := Q.X;", {{1, 0}}),
+            (Values{2.5 + 80, 1.5}));
+  EXPECT_EQ(of("P := MOVED(MAKE(A), 1.0); Y := P.X; Z := P.Y;", {{4, 0}}), (Values{5, 2})) << "behind its RETURN";
+  EXPECT_EQ(of("IF SUM_OF(MAKE(A)) > 3.0 THEN Y := SUM_OF(MOVED(D := 1.0, P := MAKE(A))); END_IF; Z := 1.0;", {{2, 0}}),
+            (Values{7, 1}));
+  EXPECT_EQ(of("R := THREE(A); Y := R[0] + R[1] + 10 * R[2];", {{3, 0}}), (Values{63, 0}));
+  EXPECT_EQ(of("I(P := MAKE(A), Q => L[K]); Y := L[2].X; Z := L[2].Y;", {{3, 2}, {4, 2}, {5, 1}}), (Values{7, 2}));
+}
+
+/// Where the index is known only when it runs, all of the element is meant.
+TEST(BodyDeclarations, AnElementIsAWhole) {
+  using Values = std::vector<double>;
+  const auto of = [](const std::string& statements, const std::vector<std::vector<double>>& rows) {
+    return last_of(with_points(statements), rows);
+  };
+  EXPECT_EQ(of("P.X := A; L[K] := P; Y := L[1].X; Z := L[2].X;", {{5, 1}, {6, 2}}), (Values{5, 6}));
+  EXPECT_EQ(of("L[K] := MAKE(A); P := L[K - 1]; Y := P.X; Z := SUM_OF(L[K]);", {{5, 1}, {6, 2}}), (Values{5, 8}));
+  EXPECT_EQ(of("L[K].X := A; I(P := L[K]); L[K] := L[0]; Y := I.Q.X; Z := L[2].X;", {{5, 0}, {6, 2}}), (Values{11, 5}));
+}
+
+TEST(BodyDeclarations, AWholeThatIsMeantAsOneValueIsRefused) {
+  const auto told = [](const std::string& statements) {
+    const auto all = refusals(with_points(statements));
+    return all.empty() ? std::string() : all.front().cause + " / " + all.front().mend;
+  };
+  EXPECT_EQ(told("Y := MAKE(A) + 1.0;"),
+            "MAKE gives no single value / Assign all of it first: X := MAKE( … ), with X of the same type; then read a "
+            "member or an element of X.");
+  EXPECT_EQ(told("Y := MAKE(A).X;"),
+            "A part is taken of what MAKE gives. / Assign all of it first: X := MAKE( … ), with X of the same type; "
+            "then read the part of X.");
+  EXPECT_EQ(told("Y := MAKE(A);"), "'Y' and 'MAKE' are not of one type / Take one of its members or elements.");
+  EXPECT_EQ(told("P := THREE(A);"),
+            "'P' and 'THREE' are not of one type / Copy an array or a structure into one of the same type.");
+  EXPECT_EQ(told("Y := SUM_OF(1.0);"),
+            "here is one value, where an array or a structure is expected / Write a variable of that type, or a "
+            "FUNCTION that gives one.");
+  EXPECT_EQ(told("P := I;"),
+            "'P' and 'I' are not of one type / Copy an array or a structure into one of the same type.");
+}
+
 /// A counter that a condition holds back stays where it is held, step after step: its loop ends.
 TEST(BodyDeclarations, MemoryStaysWhereEveryStepLeavesIt) {
   const auto average = [](const std::string& counting) {

@@ -125,9 +125,19 @@ class Body {
   std::optional<Value> named_constant(const language::body::Access& access);
   Value read(const language::body::Access& access);
   void assign(const language::body::Access& access, const Value& value, language::Span span);
-  void copy(Place& to, Place& from, language::Span span);
+  bool refuse_constant(const language::body::Access& access);
   void close_cells();
   void restart(Place& place);
+
+  // Arrays and structures as wholes: body_wholes.cpp.
+  bool is_whole(language::ExpressionId id);
+  Place* whole(language::ExpressionId id);
+  void assign_whole(const language::body::Access& target, language::ExpressionId id, language::Span span);
+  void assign_whole(const language::body::Access& target, Place& from, language::Span span);
+  void copy(Place& to, Place& from, language::Span span, const std::optional<Value>& condition = {});
+  Place* keep(const TypeRef& type, const std::string& path, const std::vector<Value>& values, language::Span span);
+  std::vector<Value> values_of(const Place& place);
+  void forget(std::size_t leaves, std::size_t wholes);
 
   // Statements: body_statements.cpp.
   void execute(const language::body::Statements& list, std::size_t from = 0);
@@ -175,7 +185,12 @@ class Body {
   void hand_back(Place& place, const std::vector<language::body::Argument>& arguments);
   void enter(Place& place, const Source& source);
   Value call(const language::body::Call& call, language::Span span);
-  Value call_unit(const Source& source, const language::body::Call& call, language::Span span);
+  /// What a FUNCTION gives: a value, or a whole array or structure.
+  struct Result {
+    Value value{};
+    Place* whole = nullptr;
+  };
+  Result call_unit(const Source& source, const language::body::Call& call, language::Span span);
   std::optional<Value> conversion(const std::string& name, const std::vector<Value>& values);
   std::optional<Value> function(const std::string& name, std::vector<Value>& values);
   std::optional<Value> of_number(const std::string& name, const std::vector<Value>& values);
@@ -196,6 +211,7 @@ class Body {
   std::unique_ptr<Place> globals_{};  ///< constants of the file
   Place* scope_ = nullptr;
   std::vector<Leaf> leaves_{};
+  std::vector<std::unique_ptr<Place>> wholes_{};  ///< results that are arrays or structures, while they are needed
   State state_{};
   int conditions_ = 0;    ///< under how many a statement stands
   int called_again_ = 0;  ///< within how many instances that are called more than once places are made

@@ -66,9 +66,7 @@ void Body::hand_over(Place& place, const std::vector<syntax::Argument>& argument
       continue;
     }
     if (pin->leaf == Place::no_leaf) {
-      const auto* access = std::get_if<syntax::Access>(&expression(one.value).node);
-      Place* const from = access != nullptr ? find(*access) : nullptr;
-      if (from != nullptr) {
+      if (Place* const from = whole(one.value)) {
         copy(*pin, *from, span);
       }
       continue;
@@ -84,19 +82,20 @@ void Body::hand_back(Place& place, const std::vector<syntax::Argument>& argument
     if (!one.output) {
       continue;
     }
-    const Place* const pin = place.find(upper(one.formal.text));
+    Place* const pin = place.find(upper(one.formal.text));
     const auto* target = std::get_if<syntax::Access>(&expression(one.value).node);
     if (pin == nullptr) {
       refuse(error::unknown_pin, one.formal.span, fmt::format("'{}' has no output '{}'", place.path, one.formal.text),
              one_of_members(place, one.formal.text));
       continue;
     }
-    if (pin->leaf == Place::no_leaf || target == nullptr) {
-      refuse(error::unknown_pin, one.formal.span,
-             pin->leaf == Place::no_leaf ? fmt::format("'{}' of '{}' is no single value", one.formal.text, place.path)
-                                         : fmt::format("'{}' is handed to what is no variable", one.formal.text),
-             fmt::format("Write {} => and a variable of its type; of a structure, read a member behind the call.",
-                         one.formal.text));
+    if (target == nullptr) {
+      refuse(error::unknown_pin, one.formal.span, fmt::format("'{}' is handed to what is no variable", one.formal.text),
+             fmt::format("Write {} => and a variable of its type.", one.formal.text));
+      continue;
+    }
+    if (pin->leaf == Place::no_leaf) {
+      assign_whole(*target, *pin, one.formal.span);
       continue;
     }
     assign(*target, read(pin->leaf), one.formal.span);
@@ -225,8 +224,9 @@ void Body::invoke_library(Place& place, language::Span span) {
   }
 }
 
-Value Body::call_unit(const Source& source, const syntax::Call& call, language::Span span) {
+Body::Result Body::call_unit(const Source& source, const syntax::Call& call, language::Span span) {
   const std::size_t leaves = leaves_.size();
+  const std::size_t wholes = wholes_.size();
   const TypeRef result_type = types_.resolve(source.unit->result);
   if (!result_type) {
     return {};
@@ -253,16 +253,22 @@ Value Body::call_unit(const Source& source, const syntax::Call& call, language::
           static_cast<std::size_t>(std::ranges::find(members, upper(one.formal.text), &Member::name) - members.begin());
     }
     if (targets[i] >= members.size() || level_ >= most_calls_in_calls) {
-      return refuse(targets[i] >= members.size() ? error::unknown_function : error::recursive_block, span,
-                    targets[i] >= members.size() ? fmt::format("{} does not take these arguments", name)
-                                                 : fmt::format("'{}' calls itself", name),
-                    targets[i] >= members.size() ? "Give its inputs in their order, or by name."
-                                                 : "A function cannot be a part of itself.");
+      refuse(targets[i] >= members.size() ? error::unknown_function : error::recursive_block, span,
+             targets[i] >= members.size() ? fmt::format("{} does not take these arguments", name)
+                                          : fmt::format("'{}' calls itself", name),
+             targets[i] >= members.size() ? "Give its inputs in their order, or by name."
+                                          : "A function cannot be a part of itself.");
+      return {};
     }
     const bool plain = members[targets[i]].type->kind == BodyType::Kind::Plain;
     if (!one.output && plain && members[targets[i]].role != syntax::Role::InOut) {
       given[i] = value(one.value);
       if (!given[i].valid()) {
+        return {};
+      }
+    } else if (!one.output && members[targets[i]].role != syntax::Role::InOut) {
+      handed[i] = whole(one.value);
+      if (handed[i] == nullptr) {
         return {};
       }
     } else if (!one.output) {
@@ -291,14 +297,14 @@ Value Body::call_unit(const Source& source, const syntax::Call& call, language::
     }
   }
   enter(frame, source);
-  const Value result = frame.parts.back()->leaf != Place::no_leaf
-                           ? read(frame.parts.back()->leaf)
-                           : refuse(error::refused_in_body, span, fmt::format("{} gives no single value", name),
-                                    "Use a VAR_IN_OUT for an array or a structure.");
+  const Place& given_back = *frame.parts.back();
+  const std::vector<Value> result = values_of(given_back);
   hand_back(frame, call.arguments);
-  leaves_.resize(leaves);
-  state_.values.resize(leaves);
-  return result;
+  forget(leaves, wholes);
+  if (given_back.leaf == Place::no_leaf) {
+    return {.whole = keep(result_type, name, result, span)};
+  }
+  return {.value = result.front()};
 }
 
 }  // namespace hysteron::bodies

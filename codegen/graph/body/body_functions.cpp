@@ -57,7 +57,13 @@ std::vector<std::string> formal_names(const std::string& function) {
 Value Body::call(const syntax::Call& call, language::Span span) {
   const std::string name = upper(call.function.text);
   if (const Source source = types_.find_unit(name, true); source.unit != nullptr) {
-    return call_unit(source, call, span);
+    const Result given = call_unit(source, call, span);
+    return given.whole == nullptr
+               ? given.value
+               : refuse(error::refused_in_body, span, fmt::format("{} gives no single value", name),
+                        fmt::format("Assign all of it first: X := {}( … ), with X of the same type; then read a member "
+                                    "or an element of X.",
+                                    name));
   }
   if (scope_ != nullptr && scope_->find(name) != nullptr) {
     return refuse(error::refused_in_body, call.function.span,

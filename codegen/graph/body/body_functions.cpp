@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "codegen/graph/body/body.hpp"
+#include "codegen/language/refused_types.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::bodies {
@@ -125,6 +126,11 @@ std::optional<Value> Body::conversion(const std::string& name, const std::vector
   Plain from = Plain::Bool;
   const std::string_view first = mark == 0 ? std::string_view() : std::string_view(name).substr(0, mark - 1);
   std::string_view second = std::string_view(name).substr(mark + 3);
+  for (const std::string_view type : {first, second}) {
+    if (const auto mend = language::in_place_of_type(type); !mend.empty()) {
+      return computer_.refused(error::refused_type, fmt::format("{}: a body has no {}", name, type), std::string(mend));
+    }
+  }
   if (!plain_of(second, to) || (!first.empty() && !plain_of(first, from))) {
     return std::nullopt;
   }

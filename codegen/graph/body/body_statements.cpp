@@ -93,10 +93,12 @@ void Body::choose(const Value& condition, const std::function<void()>& yes, cons
   ++conditions_;
   yes();
   State after_yes = std::exchange(state_, std::move(before));
+  leaves_.resize(state_.values.size());  // what one side has kept for its calls is not the other's
   no();
   --conditions_;
   computer_.at(span);
   state_ = merged(condition, std::move(after_yes), std::move(state_));
+  leaves_.resize(state_.values.size());
 }
 
 void Body::branches(const std::vector<syntax::Branch>& list, std::size_t at, const syntax::Statements& otherwise) {
@@ -185,6 +187,13 @@ bool Body::refuse_constant(const syntax::Access& access) {
   return constant;
 }
 
+/// A value as a variable takes it: an enumeration, any whole number.
+Value Body::taken_by(const Place& place, const Value& value, const std::string& name) {
+  const Plain type = leaves_[place.leaf].type;
+  const bool whole = place.type != nullptr && place.type->is_enumeration && value.valid() && is_integer(value.type);
+  return whole && !value.loose ? computer_.convert(value, type) : computer_.assignable(value, type, name);
+}
+
 void Body::assign(const syntax::Access& access, const Value& value, language::Span span) {
   const auto list = choices(access);
   if (list.empty() || !value.valid()) {
@@ -210,7 +219,7 @@ void Body::assign(const syntax::Access& access, const Value& value, language::Sp
       const Value truth = computer_.assignable(value, Plain::Bool, "a bit");
       kept = truth.valid() ? computer_.fit(computer_.select(truth, set, cleared), type) : Value{};
     } else {
-      kept = computer_.assignable(value, type, std::string(access.name.text));
+      kept = taken_by(*one.place, value, std::string(access.name.text));
       check_subrange(*one.place, kept, span);
     }
     if (!kept.valid()) {

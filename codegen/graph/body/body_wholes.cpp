@@ -53,6 +53,18 @@ std::vector<Value> Body::values_of(const Place& place) {
   return list;
 }
 
+/// Those of the one that is meant.
+std::vector<Value> Body::values_of(const std::vector<Choice>& list) {
+  std::vector<Value> values = values_of(*list.back().place);
+  for (std::size_t i = list.size() - 1; i-- > 0;) {
+    const auto here = values_of(*list[i].place);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      values[k] = computer_.select(*list[i].condition, here[k], values[k]);
+    }
+  }
+  return values;
+}
+
 /// A place for values that belong to no variable; it lasts until its statement or its call ends.
 Place* Body::keep(const TypeRef& type, const std::string& path, const std::vector<Value>& values, language::Span span) {
   const auto first = static_cast<std::uint32_t>(leaves_.size());
@@ -95,14 +107,28 @@ Place* Body::whole(language::ExpressionId id) {
   if (!is_copied(*list.front().place)) {
     return find(*access);
   }
-  std::vector<Value> values = values_of(*list.back().place);
-  for (std::size_t i = list.size() - 1; i-- > 0;) {
-    const auto here = values_of(*list[i].place);
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      values[k] = computer_.select(*list[i].condition, here[k], values[k]);
+  return keep(list.front().place->type, list.front().place->path, values_of(list), span);
+}
+
+Place* Body::lend(const syntax::Access& access, std::vector<Lent>& lent) {
+  auto list = choices(access);
+  if (list.size() <= 1) {
+    return list.empty() ? nullptr : list.front().place;
+  }
+  if (!is_copied(*list.front().place)) {
+    return find(access);
+  }
+  Place* const place = keep(list.front().place->type, list.front().place->path, values_of(list), access.span);
+  lent.push_back({std::move(list), place});
+  return place;
+}
+
+void Body::take_back(const std::vector<Lent>& lent, language::Span span) {
+  for (const Lent& one : lent) {
+    for (const Choice& owner : one.owners) {
+      copy(*owner.place, *one.place, span, owner.condition);
     }
   }
-  return keep(list.front().place->type, list.front().place->path, values, span);
 }
 
 void Body::assign_whole(const syntax::Access& target, language::ExpressionId id, language::Span span) {

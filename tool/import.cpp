@@ -1,13 +1,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "codegen/compile.hpp"
+#include "codegen/import/global_list.hpp"
 #include "codegen/import/plcopen_import.hpp"
 #include "codegen/import/twincat_import.hpp"
 #include "support/atomic_file.hpp"
@@ -30,8 +33,8 @@ constexpr std::string_view import_examples = R"(Examples:
 Reads PLCopen TC6 XML, as CODESYS, TwinCAT, OpenPLC and Beremiz export it. Networks of function blocks (FBD) and ladders
 of contacts and coils (LD) become diagrams; a body in ST keeps its text. TON is HY_TON, and so on. What is read before it
 is worked out becomes a HY_DELAY. What a diagram cannot express is refused by its name and localId, and nothing is written.
-A .TcPOU of TwinCAT with a body in ST comes with the blocks, functions and types that it names, from the folder of its
-.plcproj, or from its own folder where there is none.
+A .TcPOU of TwinCAT with a body in ST comes with the blocks, functions, types and global variables that it names, from
+the folder of its .plcproj, or from its own folder where there is none.
 Exit codes: 0 done; 1 written, and hysteron check finds errors in the text; 2 refused, or a file cannot be read or written.
 )";
 
@@ -42,15 +45,30 @@ struct ImportCommand {
   ImportOptions options;
 };
 
-/// Files of objects below a folder, by the name of the object in capitals.
+/// Files of objects below a folder, by the name of the object in capitals; lists of global variables by those of the
+/// variables, too.
 std::map<std::string, fs::path> objects_below(const fs::path& folder) {
   std::map<std::string, fs::path> objects;
+  std::vector<fs::path> lists;
   std::error_code unreadable;
   for (fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, unreadable), end;
        !unreadable && at != end; at.increment(unreadable)) {
     const std::string ending = in_capitals(at->path().extension().string());
-    if (ending == ".TCPOU" || ending == ".TCDUT") {
+    if (ending == ".TCPOU" || ending == ".TCDUT" || ending == ".TCGVL") {
       objects.emplace(in_capitals(at->path().stem().string()), at->path());
+      if (ending == ".TCGVL") {
+        lists.push_back(at->path());
+      }
+    }
+  }
+  std::ranges::sort(lists);
+  for (const fs::path& path : lists) {
+    const auto list = global_list_of(read_text_file(path.string()));
+    for (const GlobalVariable& variable :
+         list && !list->qualified_only ? list->variables : std::vector<GlobalVariable>{}) {
+      for (const std::string& name : variable.names) {
+        objects.emplace(name, path);
+      }
     }
   }
   return objects;

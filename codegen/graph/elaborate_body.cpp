@@ -1,4 +1,6 @@
 // A block with a sequential body: its statements are executed once, with wires for values.
+#include <fmt/format.h>
+
 #include <map>
 #include <string>
 #include <utility>
@@ -44,6 +46,16 @@ void Elaborator::elaborate_body(const Instance& instance) {
   const bodies::MemoryRanges memory = bodies::memory_ranges(library, unit, around, inputs);
   around.memory = memory.empty() ? nullptr : &memory;
   bodies::Body body(library, unit, std::move(around));
+  for (const auto* const global : body.shared()) {
+    const auto [owner, is_first] = owners_.try_emplace(global->name.text, instance.path);
+    if (!is_first) {
+      const auto instance_name = [](std::string_view path) { return path.substr(0, path.size() - 1); };
+      error(error::refused_section, global->name.span,
+            fmt::format("the global variable '{}' joins the instances {} and {}", global->name.text,
+                        instance_name(owner->second), instance_name(instance.path)),
+            "Each has a memory of its own: put the variable into their block, or hand it over as input and output.");
+    }
+  }
   auto results = body.run(inputs);
   levels_.resize(graph_.nodes.size(), instance.level);
   for (std::size_t i = 0; i < definition.variables.size(); ++i) {

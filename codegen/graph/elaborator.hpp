@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -126,8 +127,9 @@ class Elaborator {
   GraphBuilder builder_;
   std::vector<Slot> slots_;
   std::vector<Parameter> open_parameters_;
-  std::vector<std::uint32_t> levels_;                   ///< beside the nodes: in how many blocks each is written
-  std::unordered_map<std::uint32_t, Wire> noisy_;       ///< by the slot of an output: what its readers get
+  std::map<std::string_view, std::string> owners_{};  ///< of global variables that are memory: the path of an instance
+  std::vector<std::uint32_t> levels_;                 ///< beside the nodes: in how many blocks each is written
+  std::unordered_map<std::uint32_t, Wire> noisy_;     ///< by the slot of an output: what its readers get
   std::unordered_map<std::string, std::size_t> given_;  ///< by path: how many numbers the text gives a parameter
 };
 

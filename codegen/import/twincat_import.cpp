@@ -3,33 +3,47 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <pugixml.hpp>
 #include <set>
 #include <vector>
 
+#include "codegen/import/global_list.hpp"
 #include "codegen/language/lexer.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 
 namespace hysteron {
+
+using language::Symbol;
+
 namespace {
 
 /// A word of a text outside of comments, pragmas and strings.
 struct TextWord {
   std::string_view text{};
+  std::size_t begin = 0;
   std::size_t end = 0;  ///< where it ends in the text
+  Symbol before = Symbol::End;
+  Symbol behind = Symbol::End;
 };
 
 std::vector<TextWord> words_of_text(std::string_view text) {
-  using language::Symbol;
   language::Lexer lexer(text, language::Comments::Annotated, nullptr);
   lexer.take_foreign();
   std::vector<TextWord> words;
+  Symbol before = Symbol::End;
+  bool is_behind_word = false;
   for (language::Token one = lexer.next(); one.symbol != Symbol::End; one = lexer.next()) {
-    if (one.symbol == Symbol::Identifier || one.symbol == Symbol::Keyword || one.symbol == Symbol::Typed) {
-      const std::string_view word = text.substr(one.offset, one.length);
-      words.push_back({word.substr(0, word.find('#')), one.end()});  // STATE#IDLE names STATE
+    if (is_behind_word) {
+      words.back().behind = one.symbol;
     }
+    is_behind_word = one.symbol == Symbol::Identifier || one.symbol == Symbol::Keyword || one.symbol == Symbol::Typed;
+    if (is_behind_word) {
+      const std::string_view word = text.substr(one.offset, one.length);
+      words.push_back({word.substr(0, word.find('#')), one.offset, one.end(), before});  // STATE#IDLE names STATE
+    }
+    before = one.symbol;
   }
   return words;
 }
@@ -65,12 +79,12 @@ class TwincatImport {
       } else if (kind == "DUT") {
         const std::string declaration = object.child_value("Declaration");
         add_needed(declaration, object.attribute("Name").value());
-        append(declaration);
+        append(without_lists(declaration));
       } else if (kind == "GVL" || kind == "Itf") {
         refuse(file, object,
                fmt::format("{} is {}", object.attribute("Name").value(),
                            kind == "GVL" ? "a list of global variables" : "an interface"),
-               kind == "GVL" ? "Hand its variables over as inputs; write its constants into the block, as VAR CONSTANT."
+               kind == "GVL" ? "Import a block that names its variables: they come with it."
                              : "A diagram has no objects: take the block itself.");
       }
     }
@@ -91,7 +105,7 @@ class TwincatImport {
       return;
     }
     std::string declaration = pou.child_value("Declaration");
-    const std::string statements = body.child_value();
+    std::string statements = body.child_value();
     const std::vector<TextWord> words = words_of_text(declaration);
     const auto is_kind = [](const TextWord& word) {
       return equal_ignoring_case(word.text, "FUNCTION_BLOCK") || equal_ignoring_case(word.text, "FUNCTION") ||
@@ -108,23 +122,95 @@ class TwincatImport {
       return;
     }
     add_needed(declaration + "\n" + statements, name);
+    refuse_hidden(file, pou, declaration, declaration + "\n" + statements);
     const std::string ending = "END_" + in_capitals(kind->text);
     if (equal_ignoring_case(kind->text, "FUNCTION_BLOCK")) {
       const bool timed = is_first && !options_.cycle.empty();
       declaration.insert(its_name->end, timed ? fmt::format(" (* @ts {} @body *)", options_.cycle) : " (* @body *)");
     }
-    append(declaration + "\n" + statements + "\n" + ending);
+    append(without_lists(declaration + "\n" + statements) + "\n" + ending);
   }
 
   /// What a text names and the project has, before the text itself.
   void add_needed(const std::string& text, const std::string& own) {
     added_.insert(in_capitals(own));
-    for (const TextWord& word : words_of_text(text)) {
-      if (!added_.insert(in_capitals(word.text)).second) {
-        continue;
+    const std::vector<TextWord> words = words_of_text(text);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      const std::string name = in_capitals(words[i].text);
+      if (words[i].before == Symbol::Dot) {
+        continue;  // a member
       }
-      if (const auto file = find_(word.text)) {
-        add(*file, false);
+      if (const GlobalList* const list = list_of(words[i])) {
+        if (i + 1 < words.size()) {
+          add_variable(name, *list, in_capitals(words[i + 1].text));
+        }
+      } else if (added_.insert(name).second) {
+        const auto file = find_(words[i].text);
+        if (const auto variables = file ? global_list_of(file->text) : std::nullopt) {
+          add_variable(file->path, *variables, name);
+        } else if (file) {
+          add(*file, false);
+        }
+      }
+    }
+  }
+
+  /// The list that a word names, where a point and one of its variables stand behind it; null where it names none.
+  const GlobalList* list_of(const TextWord& word) {
+    if (word.behind != Symbol::Dot || word.before == Symbol::Dot) {
+      return nullptr;
+    }
+    const auto [found, is_new] = lists_.try_emplace(in_capitals(word.text));
+    if (is_new) {
+      const auto file = find_(word.text);
+      found->second = file ? global_list_of(file->text) : std::nullopt;
+    }
+    return found->second ? &*found->second : nullptr;
+  }
+
+  void add_variable(const std::string& list, const GlobalList& variables, const std::string& name) {
+    const GlobalVariable* const variable = variables.find(name);
+    if (variable == nullptr || !variables_.emplace(name, variable->text).second) {
+      return;
+    }
+    for (const std::string& other : variable->names) {
+      variables_.emplace(other, variable->text);
+    }
+    add_needed(variable->text, list + "." + name);
+    append(without_lists(variable->text));
+  }
+
+  /// LIST.NAME is NAME: its list comes with the text.
+  std::string without_lists(std::string text) {
+    const std::vector<TextWord> words = words_of_text(text);
+    for (std::size_t i = words.size(); i-- > 1;) {
+      if (list_of(words[i - 1]) != nullptr) {
+        text.erase(words[i - 1].begin, words[i].begin - words[i - 1].begin);
+      }
+    }
+    return text;
+  }
+
+  /// A variable of a list that a block names by it, and that would be another one without.
+  void refuse_hidden(const ProjectFile& file, const pugi::xml_node& pou, const std::string& declaration,
+                     const std::string& text) {
+    std::set<std::string> own;
+    for (const TextWord& word : words_of_text(declaration)) {
+      if (word.behind == Symbol::Colon || word.behind == Symbol::Comma) {
+        own.insert(in_capitals(word.text));
+      }
+    }
+    const std::vector<TextWord> words = words_of_text(text);
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      const GlobalList* const list = list_of(words[i - 1]);
+      const std::string name = in_capitals(words[i].text);
+      const GlobalVariable* const variable = list == nullptr ? nullptr : list->find(name);
+      const bool is_another = variable != nullptr && variables_.at(name) != variable->text;
+      if (is_another || (variable != nullptr && own.contains(name))) {
+        refuse(file, pou,
+               fmt::format("{}.{} has the name of another variable {}", words[i - 1].text, words[i].text,
+                           is_another ? "in another list" : fmt::format("of {}", pou.attribute("Name").value())),
+               "Give one of the two another name: a text here has one place for names.");
       }
     }
   }
@@ -147,7 +233,9 @@ class TwincatImport {
   const FindObject& find_;
   const ImportOptions& options_;
   Diagnostics refused_;
-  std::set<std::string> added_;  ///< names that were looked for, in capitals
+  std::map<std::string, std::optional<GlobalList>> lists_;  ///< by what may be the name of one, in capitals
+  std::map<std::string, std::string> variables_;            ///< of lists, by name in capitals: their text
+  std::set<std::string> added_;                             ///< names that were looked for, in capitals
   std::string text_;
 };
 

@@ -1,5 +1,5 @@
-// The import of TwinCAT's own files, .TcPOU and .TcDUT: the declaration and the body in Structured Text that the editor
-// keeps apart, and the blocks, functions and types of other files that they name.
+// The import of TwinCAT's own files, .TcPOU, .TcDUT and .TcGVL: the declaration and the body in Structured Text that
+// the editor keeps apart, and the blocks, functions, types and global variables of other files that they name.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,8 @@ struct ProjectFile {
   std::string text{};
 };
 
-/// The file of an object by its name, without regard to case; nothing where the project has none.
+/// The file of an object by its name, or of a list by one of its variables, without regard to case; nothing where the
+/// project has none.
 using FindObject = std::function<std::optional<ProjectFile>(std::string_view name)>;
 
 /// Whether a text is a file of an object of TwinCAT.

@@ -159,7 +159,7 @@ struct Unit {
   bool function = false;
   TypeSpec result{};
   std::vector<Declaration> declarations{};  ///< of a block, beside FunctionBlock::variables
-  std::vector<Declaration> externals{};     ///< VAR_EXTERNAL: constants of the file
+  std::vector<Declaration> externals{};     ///< VAR_EXTERNAL: global variables of the file
   Statements statements{};
   Span span{};
 };
@@ -167,7 +167,7 @@ struct Unit {
 /// All that the bodies of a file need.
 struct Library {
   std::vector<TypeDefinition> types{};
-  std::vector<Declaration> globals{};  ///< VAR_GLOBAL CONSTANT
+  std::vector<Declaration> globals{};  ///< VAR_GLOBAL
   std::vector<Unit> units{};
   std::vector<Expression> expressions{};
   bool has_open_loops = false;  ///< a WHILE, a REPEAT, or a FOR whose bounds are no literals

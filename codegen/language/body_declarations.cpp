@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "codegen/language/body_parser.hpp"
+#include "codegen/language/refused_types.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::language {
@@ -170,6 +171,7 @@ bool BodyParser::enumeration(body::TypeSpec& spec) {
     return false;
   }
   if (is(Symbol::Identifier)) {  // (A, B) INT: what it is kept in
+    spec.name = {word(now()), span_of(now())};
     advance();
   }
   return true;
@@ -215,12 +217,9 @@ bool BodyParser::type(body::TypeSpec& spec) {
                     "Take the text out: a block here computes with numbers and truth values.");
     }
   }
-  for (const auto* text : {"LINT", "ULINT", "LWORD", "LTIME", "DATE", "LDATE", "DATE_AND_TIME", "DT", "LDT", "TOD",
-                           "TIME_OF_DAY", "LTOD"}) {
-    if (same_name(spec.name.text, text)) {
-      return refuse(place, fmt::format("A body has no {}: its numbers have 32 bits, or are LREAL.", spec.name.text),
-                    "Use DINT, UDINT, DWORD, TIME or LREAL.");
-    }
+  if (const auto mend = in_place_of_type(spec.name.text); !mend.empty()) {
+    return refuse(place, fmt::format("A body has no {}: its numbers have 32 bits, or are LREAL.", spec.name.text),
+                  std::string(mend));
   }
   return true;
 }
@@ -274,21 +273,14 @@ bool BodyParser::initial(body::Initial& value) {
 }
 
 void BodyParser::globals() {
-  const auto place = span_of(now());
   advance();
-  bool constant = false;
+  Role role = Role::Local;
   while (now().keyword == Keyword::Constant || now().keyword == Keyword::Qualifier) {
-    constant = constant || is("CONSTANT");
+    role = is("CONSTANT") ? Role::Constant : role;
     advance();
   }
-  if (!constant) {
-    reporter_.error(
-        error::refused_section, place, "VAR_GLOBAL reaches out of the block.",
-        "Write VAR_GLOBAL CONSTANT where these are constants; hand a variable over as VAR_INPUT, VAR_OUTPUT or "
-        "VAR_IN_OUT.");
-  }
   while (!is("END_VAR") && !is(Symbol::End)) {
-    declaration_or_nothing(Role::Constant, library_.globals);
+    declaration_or_nothing(role, library_.globals);
   }
   end_section();
 }

@@ -135,6 +135,12 @@ ExpressionId BodyParser::primary() {
       if (!arguments(call.arguments)) {
         return no_expression;
       }
+      if (is(Symbol::LeftBracket) || (is(Symbol::Dot) && ahead().symbol == Symbol::Identifier)) {
+        refuse(since(begin), fmt::format("A part is taken of what {} gives.", call.function.text),
+               fmt::format("Assign all of it first: X := {}( … ), with X of the same type; then read the part of X.",
+                           call.function.text));
+        return no_expression;
+      }
       return make({.node = std::move(call), .span = since(begin)});
     }
     body::Access read;

@@ -50,6 +50,17 @@ TEST(BodyErrors, NameWhatThereIsInstead) {
       "T#1ms * ( … ), which means the same everywhere.");
   EXPECT_EQ(first("Y := 1;", "B : ARRAY[5..2] OF INT;"),
             "the upper bound of this array, 2, is below the lower one, 5 / Write the lower one first: 2..5.");
+  EXPECT_EQ(
+      first("Y := 1;", "B : ULINT;"),
+      "A body has no ULINT: its numbers have 32 bits, or are LREAL. / Use UDINT; above 4294967295 an LREAL, which "
+      "has every whole number up to 9007199254740992.");
+  EXPECT_EQ(
+      first("Y := LINT_TO_DINT(Y);"),
+      "LINT_TO_DINT: a body has no LINT / Use DINT; above 2147483647 an LREAL, which has every whole number up to "
+      "9007199254740992.");
+  EXPECT_EQ(first("Y := LINT#5;"),
+            "LINT# is no type of a body / Use DINT; above 2147483647 an LREAL, which has every whole number up to "
+            "9007199254740992.");
 }
 
 /// By the standard methods stand before the body: what is behind them is read as the body.

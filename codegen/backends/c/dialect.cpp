@@ -274,6 +274,8 @@ std::span<const std::string_view> c_words() {
       list.push_back(helper.name);
     }
     list.insert(list.end(), {"restrict", "pow", "powf", "isnan", "sample_time"});
+    list.insert(list.end(),
+                {"size_t", "int32_t", "uint32_t", "uint16_t", "int64_t", "uint64_t"});  // a local would hide its type
     return list;
   }();
   return words;

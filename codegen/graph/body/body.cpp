@@ -27,7 +27,8 @@ Body::Body(const syntax::Library& library, const syntax::Unit& unit, Surrounding
           [this](int number, language::Span span, std::string cause, std::string mend) {
             around_.report(number, place_of(span), std::move(cause), std::move(mend));
           },
-          [this](language::ExpressionId id, double& number) { return constant(id, number); }) {
+          [this](language::ExpressionId id, double& number) { return constant(id, number); }),
+      file_(library) {
   const Value none = computer_.truth(false);
   state_.returned = state_.exited = state_.continued = none;
 }
@@ -52,18 +53,19 @@ const Written& Body::written(const Source& source) {
   return found->second;
 }
 
-/// A VAR_EXTERNAL is a constant of the file, or something that this file does not have.
+/// A VAR_EXTERNAL is a global variable of the file, or something that this file does not have.
 void Body::check_externals() {
   for (const syntax::Declaration& one : source_.unit->externals) {
     const bool known = std::ranges::any_of(types_.library().globals, [&](const syntax::Declaration& global) {
       return language::same_name(global.name.text, one.name.text);
     });
     if (!known) {
-      refuse(error::refused_section, one.name.span,
-             fmt::format("VAR_EXTERNAL '{}' reaches out of the block, and this file has no constant of that name",
-                         one.name.text),
-             "Hand the variable over as VAR_INPUT, VAR_OUTPUT or VAR_IN_OUT; put a constant into VAR_GLOBAL CONSTANT … "
-             "END_VAR of this file.");
+      refuse(
+          error::refused_section, one.name.span,
+          fmt::format("VAR_EXTERNAL '{}' reaches out of the block, and this file has no global variable of that name",
+                      one.name.text),
+          "Hand the variable over as VAR_INPUT, VAR_OUTPUT or VAR_IN_OUT; put a constant, or what this block alone "
+          "keeps in it, into VAR_GLOBAL … END_VAR of this file.");
     }
   }
 }
@@ -122,6 +124,9 @@ std::vector<BorderPort> Body::ports(bool in_place) {
   std::vector<BorderPort> list;
   root_ = std::make_unique<Place>();
   check_externals();
+  if (!in_place) {
+    file_.check(*source_.unit, around_.report);
+  }
   const auto& declarations = source_.unit->declarations;
   for (std::size_t i = 0; i < declarations.size(); ++i) {
     const syntax::Declaration& one = declarations[i];
@@ -180,7 +185,17 @@ BorderPort Body::port(std::size_t declaration, const BodyType& whole, std::strin
 
 std::map<std::string, Wire> Body::run(const std::map<std::string, Wire>& inputs) {
   globals_ = std::make_unique<Place>();
-  make_members(*globals_, types_.members(types_.library().globals), false);
+  std::vector<Member> globals = types_.members(file_.declarations());
+  for (const syntax::Declaration* const one : shared()) {
+    const auto member = std::ranges::find(globals, upper(one->name.text), &Member::name);
+    if (member != globals.end() && !port_count(*member->type)) {
+      refuse(error::refused_section, one->name.span,
+             fmt::format("the global variable '{}' is an instance", one->name.text),
+             fmt::format("Declare it between VAR and END_VAR of {}.", source_.unit->name.text));
+    }
+  }
+  std::erase_if(globals, [](const Member& one) { return !port_count(*one.type); });
+  make_members(*globals_, globals, true);
   root_ = std::make_unique<Place>();
   make_members(*root_, types_.members(source_.unit->declarations), true);
   scope_ = root_.get();

@@ -18,6 +18,7 @@
 
 #include "codegen/graph/body/assigned.hpp"
 #include "codegen/graph/body/computer.hpp"
+#include "codegen/graph/body/globals.hpp"
 #include "codegen/graph/body/place.hpp"
 
 namespace hysteron::bodies {
@@ -73,6 +74,10 @@ class Body {
   std::map<std::string, Wire> run(const std::map<std::string, Wire>& inputs);
   /// Behind run: the whole numbers that are memory.
   [[nodiscard]] const std::vector<Kept>& kept() const { return kept_; }
+  /// The global variables that are its memory.
+  [[nodiscard]] std::vector<const language::body::Declaration*> shared() const {
+    return file_.variables_of(*source_.unit);
+  }
 
  private:
   /// Loops unrolled, calls executed in place: so many statements are a program, not a block.
@@ -125,9 +130,28 @@ class Body {
   std::optional<Value> named_constant(const language::body::Access& access);
   Value read(const language::body::Access& access);
   void assign(const language::body::Access& access, const Value& value, language::Span span);
-  void copy(Place& to, Place& from, language::Span span);
+  Value taken_by(const Place& place, const Value& value, const std::string& name);
+  bool refuse_constant(const language::body::Access& access);
   void close_cells();
   void restart(Place& place);
+
+  // Arrays and structures as wholes: body_wholes.cpp.
+  bool is_whole(language::ExpressionId id);
+  Place* whole(language::ExpressionId id);
+  void assign_whole(const language::body::Access& target, language::ExpressionId id, language::Span span);
+  void assign_whole(const language::body::Access& target, Place& from, language::Span span);
+  void copy(Place& to, Place& from, language::Span span, const std::optional<Value>& condition = {});
+  Place* keep(const TypeRef& type, const std::string& path, const std::vector<Value>& values, language::Span span);
+  std::vector<Value> values_of(const Place& place);
+  std::vector<Value> values_of(const std::vector<Choice>& list);
+  /// A VAR_IN_OUT of which it is not known before it runs which variable it is: a place that is copied back.
+  struct Lent {
+    std::vector<Choice> owners{};
+    Place* place = nullptr;
+  };
+  Place* lend(const language::body::Access& access, std::vector<Lent>& lent);
+  void take_back(const std::vector<Lent>& lent, language::Span span);
+  void forget(std::size_t leaves, std::size_t wholes);
 
   // Statements: body_statements.cpp.
   void execute(const language::body::Statements& list, std::size_t from = 0);
@@ -169,13 +193,20 @@ class Body {
 
   // Calls: body_calls.cpp; functions of the language: body_functions.cpp.
   void invoke(const language::body::Invoke& node, language::Span span);
+  void invoke_one_of(const std::vector<Choice>& list, std::size_t at, const language::body::Invoke& node);
+  void invoke(Place& place, const language::body::Invoke& node);
   void invoke_unit(Place& place, const language::body::Invoke& node);
   void invoke_library(Place& place, language::Span span);
   void hand_over(Place& place, const std::vector<language::body::Argument>& arguments);
   void hand_back(Place& place, const std::vector<language::body::Argument>& arguments);
   void enter(Place& place, const Source& source);
   Value call(const language::body::Call& call, language::Span span);
-  Value call_unit(const Source& source, const language::body::Call& call, language::Span span);
+  /// What a FUNCTION gives: a value, or a whole array or structure.
+  struct Result {
+    Value value{};
+    Place* whole = nullptr;
+  };
+  Result call_unit(const Source& source, const language::body::Call& call, language::Span span);
   std::optional<Value> conversion(const std::string& name, const std::vector<Value>& values);
   std::optional<Value> function(const std::string& name, std::vector<Value>& values);
   std::optional<Value> of_number(const std::string& name, const std::vector<Value>& values);
@@ -192,10 +223,12 @@ class Body {
   Computer computer_;
   Source source_;  ///< of the statements that are executed now
   Types types_;
+  Globals file_;  ///< its global variables
   std::unique_ptr<Place> root_{};
-  std::unique_ptr<Place> globals_{};  ///< constants of the file
+  std::unique_ptr<Place> globals_{};  ///< of the file
   Place* scope_ = nullptr;
   std::vector<Leaf> leaves_{};
+  std::vector<std::unique_ptr<Place>> wholes_{};  ///< results that are arrays or structures, while they are needed
   State state_{};
   int conditions_ = 0;    ///< under how many a statement stands
   int called_again_ = 0;  ///< within how many instances that are called more than once places are made

@@ -15,7 +15,23 @@ using language::upper;
 
 namespace {
 constexpr int most_calls_in_calls = 40;
+
+/// CODESYS and TwinCAT call some pins of the standard's blocks by longer names.
+std::string standard_pin(const Place& place, const std::string& name) {
+  if (place.type == nullptr || place.type->source.library != &standard_blocks() || place.find(name) != nullptr) {
+    return name;
+  }
+  using Row = std::pair<std::string_view, std::string_view>;
+  for (const auto& [longer, pin] :
+       {Row{"RESET", "R"}, Row{"LOAD", "LD"}, Row{"SET", "S"}, Row{"SET1", "S1"}, Row{"RESET1", "R1"}}) {
+    if (longer == name && place.find(std::string(pin)) != nullptr) {
+      return std::string(pin);
+    }
+  }
+  return name;
 }
+
+}  // namespace
 
 void Body::invoke(const syntax::Invoke& node, language::Span span) {
   if (node.instance.steps.empty() && scope_->find(upper(node.instance.name.text)) == nullptr) {
@@ -25,20 +41,32 @@ void Body::invoke(const syntax::Invoke& node, language::Span span) {
       return;
     }
   }
-  Place* const place = find(node.instance);
-  if (place == nullptr) {
+  if (const auto list = choices(node.instance); !list.empty()) {
+    invoke_one_of(list, 0, node);
+  }
+}
+
+/// Of an array of instances, the one that the index means.
+void Body::invoke_one_of(const std::vector<Choice>& list, std::size_t at, const syntax::Invoke& node) {
+  if (at + 1 == list.size()) {
+    invoke(*list[at].place, node);
     return;
   }
-  if (place->type != nullptr && place->type->kind == BodyType::Kind::Block) {
-    invoke_unit(*place, node);
-  } else if (place->type != nullptr && place->type->kind == BodyType::Kind::Library) {
-    hand_over(*place, node.arguments);
-    if (runs_by_clock(*place)) {
-      invoke_by_clock(*place, node.instance.span);
+  choose(
+      *list[at].condition, [&] { invoke(*list[at].place, node); }, [&] { invoke_one_of(list, at + 1, node); });
+}
+
+void Body::invoke(Place& place, const syntax::Invoke& node) {
+  if (place.type != nullptr && place.type->kind == BodyType::Kind::Block) {
+    invoke_unit(place, node);
+  } else if (place.type != nullptr && place.type->kind == BodyType::Kind::Library) {
+    hand_over(place, node.arguments);
+    if (runs_by_clock(place)) {
+      invoke_by_clock(place, node.instance.span);
     } else {
-      invoke_library(*place, node.instance.span);
+      invoke_library(place, node.instance.span);
     }
-    hand_back(*place, node.arguments);
+    hand_back(place, node.arguments);
   } else {
     refuse(error::type_mismatch, node.instance.span,
            fmt::format("'{}' is not an instance and cannot be called", node.instance.name.text),
@@ -51,7 +79,8 @@ void Body::hand_over(Place& place, const std::vector<syntax::Argument>& argument
     if (one.output) {
       continue;
     }
-    Place* const pin = place.find(upper(one.formal.text));
+    const std::string name = standard_pin(place, upper(one.formal.text));
+    Place* const pin = place.find(name);
     const auto span = expression(one.value).span;
     if (pin == nullptr) {
       refuse(error::unknown_pin, one.formal.text.empty() ? span : one.formal.span,
@@ -61,21 +90,19 @@ void Body::hand_over(Place& place, const std::vector<syntax::Argument>& argument
              (one.formal.text.empty() ? "Write NAME := before it. " : "") + one_of_members(place, one.formal.text));
       continue;
     }
-    const auto member = std::ranges::find(place.members, upper(one.formal.text), &Member::name);
+    const auto member = std::ranges::find(place.members, name, &Member::name);
     if (member->role == syntax::Role::InOut) {
       continue;
     }
     if (pin->leaf == Place::no_leaf) {
-      const auto* access = std::get_if<syntax::Access>(&expression(one.value).node);
-      Place* const from = access != nullptr ? find(*access) : nullptr;
-      if (from != nullptr) {
+      if (Place* const from = whole(one.value)) {
         copy(*pin, *from, span);
       }
       continue;
     }
     const Value given = value(one.value);
     computer_.at(path_for(leaves_[pin->leaf].path), place_of(span));
-    write(pin->leaf, computer_.assignable(given, leaves_[pin->leaf].type, std::string(one.formal.text)));
+    write(pin->leaf, taken_by(*pin, given, std::string(one.formal.text)));
   }
 }
 
@@ -84,19 +111,20 @@ void Body::hand_back(Place& place, const std::vector<syntax::Argument>& argument
     if (!one.output) {
       continue;
     }
-    const Place* const pin = place.find(upper(one.formal.text));
+    Place* const pin = place.find(upper(one.formal.text));
     const auto* target = std::get_if<syntax::Access>(&expression(one.value).node);
     if (pin == nullptr) {
       refuse(error::unknown_pin, one.formal.span, fmt::format("'{}' has no output '{}'", place.path, one.formal.text),
              one_of_members(place, one.formal.text));
       continue;
     }
-    if (pin->leaf == Place::no_leaf || target == nullptr) {
-      refuse(error::unknown_pin, one.formal.span,
-             pin->leaf == Place::no_leaf ? fmt::format("'{}' of '{}' is no single value", one.formal.text, place.path)
-                                         : fmt::format("'{}' is handed to what is no variable", one.formal.text),
-             fmt::format("Write {} => and a variable of its type; of a structure, read a member behind the call.",
-                         one.formal.text));
+    if (target == nullptr) {
+      refuse(error::unknown_pin, one.formal.span, fmt::format("'{}' is handed to what is no variable", one.formal.text),
+             fmt::format("Write {} => and a variable of its type.", one.formal.text));
+      continue;
+    }
+    if (pin->leaf == Place::no_leaf) {
+      assign_whole(*target, *pin, one.formal.span);
       continue;
     }
     assign(*target, read(pin->leaf), one.formal.span);
@@ -106,6 +134,7 @@ void Body::hand_back(Place& place, const std::vector<syntax::Argument>& argument
 /// The variables of a call that belong to the caller: their names stand for the caller's places while it runs.
 void Body::invoke_unit(Place& place, const syntax::Invoke& node) {
   hand_over(place, node.arguments);
+  std::vector<Lent> lent;
   for (std::size_t i = 0; i < place.members.size(); ++i) {
     if (place.members[i].role != syntax::Role::InOut) {
       continue;
@@ -120,7 +149,7 @@ void Body::invoke_unit(Place& place, const syntax::Invoke& node) {
              fmt::format("Write {} := a variable.", place.members[i].written.text));
       return;
     }
-    Place* const found = find(*access);
+    Place* const found = lend(*access, lent);
     if (found == nullptr) {
       return;
     }
@@ -147,6 +176,7 @@ void Body::invoke_unit(Place& place, const syntax::Invoke& node) {
   enter(place, place.type->source);
   standard_call_ = outer_call;
   std::ranges::fill(place.aliases, nullptr);
+  take_back(lent, node.instance.span);
   hand_back(place, node.arguments);
 }
 
@@ -225,8 +255,9 @@ void Body::invoke_library(Place& place, language::Span span) {
   }
 }
 
-Value Body::call_unit(const Source& source, const syntax::Call& call, language::Span span) {
+Body::Result Body::call_unit(const Source& source, const syntax::Call& call, language::Span span) {
   const std::size_t leaves = leaves_.size();
+  const std::size_t wholes = wholes_.size();
   const TypeRef result_type = types_.resolve(source.unit->result);
   if (!result_type) {
     return {};
@@ -238,6 +269,7 @@ Value Body::call_unit(const Source& source, const syntax::Call& call, language::
   // Arguments are computed before the variables of the call are made: they may hold calls of the same function.
   std::vector<Value> given(call.arguments.size());
   std::vector<Place*> handed(call.arguments.size(), nullptr);
+  std::vector<Lent> lent;
   std::vector<std::size_t> targets(call.arguments.size(), members.size());
   std::size_t next = 0;
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
@@ -253,11 +285,12 @@ Value Body::call_unit(const Source& source, const syntax::Call& call, language::
           static_cast<std::size_t>(std::ranges::find(members, upper(one.formal.text), &Member::name) - members.begin());
     }
     if (targets[i] >= members.size() || level_ >= most_calls_in_calls) {
-      return refuse(targets[i] >= members.size() ? error::unknown_function : error::recursive_block, span,
-                    targets[i] >= members.size() ? fmt::format("{} does not take these arguments", name)
-                                                 : fmt::format("'{}' calls itself", name),
-                    targets[i] >= members.size() ? "Give its inputs in their order, or by name."
-                                                 : "A function cannot be a part of itself.");
+      refuse(targets[i] >= members.size() ? error::unknown_function : error::recursive_block, span,
+             targets[i] >= members.size() ? fmt::format("{} does not take these arguments", name)
+                                          : fmt::format("'{}' calls itself", name),
+             targets[i] >= members.size() ? "Give its inputs in their order, or by name."
+                                          : "A function cannot be a part of itself.");
+      return {};
     }
     const bool plain = members[targets[i]].type->kind == BodyType::Kind::Plain;
     if (!one.output && plain && members[targets[i]].role != syntax::Role::InOut) {
@@ -265,9 +298,14 @@ Value Body::call_unit(const Source& source, const syntax::Call& call, language::
       if (!given[i].valid()) {
         return {};
       }
+    } else if (!one.output && members[targets[i]].role != syntax::Role::InOut) {
+      handed[i] = whole(one.value);
+      if (handed[i] == nullptr) {
+        return {};
+      }
     } else if (!one.output) {
       const auto* access = std::get_if<syntax::Access>(&expression(one.value).node);
-      handed[i] = access != nullptr ? find(*access) : nullptr;
+      handed[i] = access != nullptr ? lend(*access, lent) : nullptr;
       if (handed[i] == nullptr) {
         return {};
       }
@@ -286,19 +324,19 @@ Value Body::call_unit(const Source& source, const syntax::Call& call, language::
       copy(target, *handed[i], span);
     } else if (given[i].valid()) {
       computer_.at(place_of(span));
-      write(target.leaf,
-            computer_.assignable(given[i], leaves_[target.leaf].type, std::string(members[targets[i]].written.text)));
+      write(target.leaf, taken_by(target, given[i], std::string(members[targets[i]].written.text)));
     }
   }
   enter(frame, source);
-  const Value result = frame.parts.back()->leaf != Place::no_leaf
-                           ? read(frame.parts.back()->leaf)
-                           : refuse(error::refused_in_body, span, fmt::format("{} gives no single value", name),
-                                    "Use a VAR_IN_OUT for an array or a structure.");
+  take_back(lent, span);
+  const Place& given_back = *frame.parts.back();
+  const std::vector<Value> result = values_of(given_back);
   hand_back(frame, call.arguments);
-  leaves_.resize(leaves);
-  state_.values.resize(leaves);
-  return result;
+  forget(leaves, wholes);
+  if (given_back.leaf == Place::no_leaf) {
+    return {.whole = keep(result_type, name, result, span)};
+  }
+  return {.value = result.front()};
 }
 
 }  // namespace hysteron::bodies

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "codegen/graph/body/body.hpp"
+#include "codegen/language/refused_types.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::bodies {
@@ -57,7 +58,13 @@ std::vector<std::string> formal_names(const std::string& function) {
 Value Body::call(const syntax::Call& call, language::Span span) {
   const std::string name = upper(call.function.text);
   if (const Source source = types_.find_unit(name, true); source.unit != nullptr) {
-    return call_unit(source, call, span);
+    const Result given = call_unit(source, call, span);
+    return given.whole == nullptr
+               ? given.value
+               : refuse(error::refused_in_body, span, fmt::format("{} gives no single value", name),
+                        fmt::format("Assign all of it first: X := {}( … ), with X of the same type; then read a member "
+                                    "or an element of X.",
+                                    name));
   }
   if (scope_ != nullptr && scope_->find(name) != nullptr) {
     return refuse(error::refused_in_body, call.function.span,
@@ -119,6 +126,11 @@ std::optional<Value> Body::conversion(const std::string& name, const std::vector
   Plain from = Plain::Bool;
   const std::string_view first = mark == 0 ? std::string_view() : std::string_view(name).substr(0, mark - 1);
   std::string_view second = std::string_view(name).substr(mark + 3);
+  for (const std::string_view type : {first, second}) {
+    if (const auto mend = language::in_place_of_type(type); !mend.empty()) {
+      return computer_.refused(error::refused_type, fmt::format("{}: a body has no {}", name, type), std::string(mend));
+    }
+  }
   if (!plain_of(second, to) || (!first.empty() && !plain_of(first, from))) {
     return std::nullopt;
   }

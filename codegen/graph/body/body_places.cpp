@@ -125,16 +125,20 @@ std::unique_ptr<Place> Body::make(const TypeRef& type, const std::string& path, 
 void Body::make_members(Place& place, const std::vector<Member>& members, bool memory) {
   const bool unit = place.type == nullptr || place.type->kind == BodyType::Kind::Block;
   for (const Member& member : members) {
-    const bool fixed = member.role == syntax::Role::Constant || member.role == syntax::Role::Temporary ||
-                       (unit && member.role == syntax::Role::Local && member.type->kind != BodyType::Kind::Block &&
-                        member.type->kind != BodyType::Kind::Library && !written(source_).names.contains(member.name));
-    const std::string path = place.path.empty() ? member.name : place.path + (unit ? "." : "_") + member.name;
+    const bool global = &place == globals_.get();
+    const bool fixed =
+        member.role == syntax::Role::Constant || member.role == syntax::Role::Temporary ||
+        (unit && !global && member.role == syntax::Role::Local && member.type->kind != BodyType::Kind::Block &&
+         member.type->kind != BodyType::Kind::Library && !written(source_).names.contains(member.name));
+    const std::string_view list = global && !fixed ? "VAR_GLOBAL." : "";  // a variable of the block may have its name
+    const std::string path =
+        place.path.empty() ? fmt::format("{}{}", list, member.name) : place.path + (unit ? "." : "_") + member.name;
     const bool again = unit && written(source_).called_again.contains(member.name);
     called_again_ += again ? 1 : 0;
     const auto first = static_cast<std::ptrdiff_t>(leaves_.size());
     auto part = make(member.type, path, place_of(member.written.span), memory && !fixed);
     called_again_ -= again ? 1 : 0;
-    if (&place == globals_.get()) {
+    if (global && fixed) {
       std::for_each(leaves_.begin() + first, leaves_.end(), [](Leaf& leaf) { leaf.constant = true; });
     }
     if (member.initial != nullptr && member.initial->given()) {
@@ -282,7 +286,7 @@ std::optional<Value> Body::named_constant(const syntax::Access& access) {
     return std::nullopt;
   };
   const auto own = among(source_.unit->declarations);
-  return own || source_.library != &types_.library() ? own : among(types_.library().globals);
+  return own || source_.library != &types_.library() ? own : among(file_.declarations());
 }
 
 std::vector<Body::Choice> Body::choices(const syntax::Access& access) {

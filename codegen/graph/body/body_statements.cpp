@@ -26,7 +26,10 @@ void Body::execute(const syntax::Statements& list, std::size_t from) {
       }
       return;
     }
+    const std::size_t leaves = leaves_.size();
+    const std::size_t wholes = wholes_.size();
     execute(list[i]);
+    forget(leaves, wholes);
     const Value stop = stopped();
     if (computer_.is_true(stop)) {
       return;
@@ -90,10 +93,12 @@ void Body::choose(const Value& condition, const std::function<void()>& yes, cons
   ++conditions_;
   yes();
   State after_yes = std::exchange(state_, std::move(before));
+  leaves_.resize(state_.values.size());  // what one side has kept for its calls is not the other's
   no();
   --conditions_;
   computer_.at(span);
   state_ = merged(condition, std::move(after_yes), std::move(state_));
+  leaves_.resize(state_.values.size());
 }
 
 void Body::branches(const std::vector<syntax::Branch>& list, std::size_t at, const syntax::Statements& otherwise) {
@@ -145,15 +150,9 @@ void Body::execute(const syntax::Statement& statement) {
   if (const auto* assign_node = std::get_if<syntax::Assign>(&statement.node)) {
     const auto& target = assign_node->target;
     computer_.at(path_for(std::string(target.name.text)), place_of(statement.span));
-    if (const auto* source = std::get_if<syntax::Access>(&expression(assign_node->value).node)) {
-      // A whole array or structure is copied.
-      if (auto from = source->type.empty() && !named_constant(*source) ? choices(*source) : std::vector<Choice>{};
-          from.size() == 1 && from.front().place->leaf == Place::no_leaf) {
-        if (auto to = choices(target); to.size() == 1) {
-          copy(*to.front().place, *from.front().place, statement.span);
-        }
-        return;
-      }
+    if (is_whole(assign_node->value)) {
+      assign_whole(target, assign_node->value, statement.span);
+      return;
     }
     const Value result = value(assign_node->value);
     assign(target, result, statement.span);
@@ -178,16 +177,29 @@ void Body::execute(const syntax::Statement& statement) {
   }
 }
 
+bool Body::refuse_constant(const syntax::Access& access) {
+  const auto member = std::ranges::find(scope_->members, language::upper(access.name.text), &Member::name);
+  const bool constant = member != scope_->members.end() && member->role == syntax::Role::Constant;
+  if (constant) {
+    refuse(error::double_drive, access.name.span, fmt::format("'{}' cannot be assigned to", access.name.text),
+           "It is a constant: declare it between VAR and END_VAR.");
+  }
+  return constant;
+}
+
+/// A value as a variable takes it: an enumeration, any whole number.
+Value Body::taken_by(const Place& place, const Value& value, const std::string& name) {
+  const Plain type = leaves_[place.leaf].type;
+  const bool whole = place.type != nullptr && place.type->is_enumeration && value.valid() && is_integer(value.type);
+  return whole && !value.loose ? computer_.convert(value, type) : computer_.assignable(value, type, name);
+}
+
 void Body::assign(const syntax::Access& access, const Value& value, language::Span span) {
   const auto list = choices(access);
   if (list.empty() || !value.valid()) {
     return;
   }
-  const std::string root = language::upper(access.name.text);
-  const auto member = std::ranges::find(scope_->members, root, &Member::name);
-  if (member != scope_->members.end() && member->role == syntax::Role::Constant) {
-    refuse(error::double_drive, access.name.span, fmt::format("'{}' cannot be assigned to", access.name.text),
-           "It is a constant: declare it between VAR and END_VAR.");
+  if (refuse_constant(access)) {
     return;
   }
   for (const Choice& one : list) {
@@ -207,29 +219,13 @@ void Body::assign(const syntax::Access& access, const Value& value, language::Sp
       const Value truth = computer_.assignable(value, Plain::Bool, "a bit");
       kept = truth.valid() ? computer_.fit(computer_.select(truth, set, cleared), type) : Value{};
     } else {
-      kept = computer_.assignable(value, type, std::string(access.name.text));
+      kept = taken_by(*one.place, value, std::string(access.name.text));
       check_subrange(*one.place, kept, span);
     }
     if (!kept.valid()) {
       return;
     }
     write(one.place->leaf, one.condition ? computer_.select(*one.condition, kept, read(one.place->leaf)) : kept);
-  }
-}
-
-void Body::copy(Place& to, Place& from, language::Span span) {
-  if (to.leaf != Place::no_leaf && from.leaf != Place::no_leaf) {
-    write(to.leaf, computer_.assignable(read(from.leaf), leaves_[to.leaf].type, to.path));
-    return;
-  }
-  if (to.parts.size() != from.parts.size() || to.leaf != from.leaf ||
-      (to.type && to.type->kind != BodyType::Kind::Array && to.type->kind != BodyType::Kind::Structure)) {
-    refuse(error::type_mismatch, span, fmt::format("'{}' and '{}' are not of one type", to.path, from.path),
-           "Copy an array or a structure into one of the same type.");
-    return;
-  }
-  for (std::size_t i = 0; i < to.parts.size(); ++i) {
-    copy(*to.parts[i], *from.parts[i], span);
   }
 }
 

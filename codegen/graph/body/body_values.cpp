@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "codegen/graph/body/body.hpp"
+#include "codegen/language/refused_types.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
 
@@ -24,8 +25,9 @@ Value Body::literal(const syntax::Literal& written) {
     return computer_.literal(real ? Plain::Lreal : Plain::Dint, written.value, true);
   }
   if (!plain_of(written.type, type)) {
+    const std::string_view mend = language::in_place_of_type(written.type);
     return computer_.refused(error::refused_type, fmt::format("{}# is no type of a body", written.type),
-                             "Write INT#, DINT#, UINT#, WORD#, REAL# or the like.");
+                             std::string(mend.empty() ? "Write INT#, DINT#, UINT#, WORD#, REAL# or the like." : mend));
   }
   const bool fits = real ? is_number(type)
                          : !is_integer(type) || (written.value >= static_cast<double>(lowest(type)) &&

@@ -189,7 +189,8 @@ TypeRef Types::subrange(const syntax::TypeSpec& spec, const TypeRef& base) {
 
 TypeRef Types::enumeration(const syntax::TypeSpec& spec, std::string_view name) {
   auto made = std::make_shared<BodyType>();
-  made->plain = Plain::Dint;
+  made->is_enumeration = true;
+  made->plain = Plain::Int;  // as CODESYS and TwinCAT keep it, where nothing is said
   double next = 0.0;
   for (const auto& [value, number] : spec.values) {
     if (number != language::no_expression) {
@@ -200,7 +201,13 @@ TypeRef Types::enumeration(const syntax::TypeSpec& spec, std::string_view name) 
     if (!name.empty()) {
       enumerators_[upper(name) + "#" + upper(value.text)] = next;
     }
+    if (next < static_cast<double>(lowest(Plain::Int)) || next > static_cast<double>(highest(Plain::Int))) {
+      made->plain = Plain::Dint;
+    }
     next += 1.0;
+  }
+  if (Plain base{}; plain_of(spec.name.text, base) && is_integer(base)) {
+    made->plain = base;
   }
   return made;
 }

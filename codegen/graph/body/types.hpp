@@ -70,7 +70,8 @@ struct BodyType {
   Plain plain = Plain::Bool;
   std::int64_t low = 0;  ///< of an array's one dimension, further ones are arrays of arrays; or of a subrange
   std::int64_t high = 0;
-  bool is_subrange = false;  ///< INT (0..100)
+  bool is_subrange = false;     ///< INT (0..100)
+  bool is_enumeration = false;  ///< (OFF, ON)
   TypeRef element{};
   std::vector<Member> members{};                     ///< of a structure or a block of one's own
   Source source{};                                   ///< of a block of one's own

@@ -81,6 +81,34 @@ TEST(TwincatImport, ABlockComesWithAllThatItNamesAndCompiles) {
   ASSERT_EQ(program.graph.outputs.size(), 1U);
 }
 
+/// Of a list come the variables that are named, and what these name.
+TEST(TwincatImport, GlobalVariablesComeWithTheBlock) {
+  const std::string list = object(
+      "GVL", "GVL_Axis",
+      "{attribute 'qualified_only'}\r\nVAR_GLOBAL CONSTANT\r\n\tMost : LREAL := 2.0 * GVL_Axis.Half; // mm\r\n\tHalf "
+      ": LREAL := 4.0;\r\nEND_VAR\r\nVAR_GLOBAL\r\n\tName : STRING;\r\n\tA, Count : DINT;\r\nEND_VAR\r\n");
+  const auto block = [](const std::string& more, const std::string& statements) {
+    return object("POU", "FB_X",
+                  "FUNCTION_BLOCK FB_X\r\nVAR_OUTPUT\r\n\tY : LREAL;\r\n\tN : DINT;\r\n" + more + "END_VAR\r\n",
+                  in_st(statements));
+  };
+  const std::map<std::string, std::string> project{{"GVL_AXIS", list}};
+  const std::string text = imported(
+      block("",
+            "Y := gvl_axis.Most; // GVL_Axis.Most\r\nGVL_Axis.Count := GVL_Axis.Count + 1;\r\nN := GVL_Axis.Count;"),
+      project);
+  EXPECT_THAT(text, HasSubstr("VAR_GLOBAL CONSTANT\n  Most : LREAL := 2.0 * Half; // mm\nEND_VAR"));
+  EXPECT_THAT(text, HasSubstr("Y := Most; // GVL_Axis.Most\nCount := Count + 1;"));
+  EXPECT_THAT(text, Not(HasSubstr("STRING")));
+  EXPECT_EQ(compile_text(text).graph.outputs.size(), 2U);
+  try {
+    (void)imported(block("\tMost : LREAL;\r\n", "Y := GVL_Axis.Most; N := 1;"), project);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.diagnostics().all().at(0).cause, "GVL_Axis.Most has the name of another variable of FB_X");
+  }
+}
+
 TEST(TwincatImport, WhatADiagramCannotExpressIsNamed) {
   const std::string declaration = "FUNCTION_BLOCK FB_X\r\nVAR_OUTPUT\r\n\tY : LREAL;\r\nEND_VAR\r\n";
   const Diagnostics methods = refusal_of(

@@ -10,6 +10,7 @@
 
 #include "records/text/cell_value.hpp"
 #include "records/text/channel_head.hpp"
+#include "records/text/keyed_head.hpp"
 #include "records/text/names_above.hpp"
 #include "records/text/row_block.hpp"
 #include "records/text/scale_row.hpp"
@@ -71,7 +72,12 @@ std::string plain_name(std::string_view cell) {
 class HeadReader {
  public:
   HeadReader(const SourceText& source, const std::vector<Line>& head, const RowBlock& block, TextLayout& layout)
-      : source_(source), head_(head), cells_in_row_(block.values.size()), layout_(layout), first_row_(block.first) {}
+      : source_(source),
+        head_(head),
+        values_(block.values),
+        cells_in_row_(block.values.size()),
+        layout_(layout),
+        first_row_(block.first) {}
 
   void read() {
     layout_.stated = stated_rate(head_, first_row_);
@@ -81,6 +87,13 @@ class HeadReader {
         layout_.columns.push_back({.name = channel.name, .unit = channel.unit});
       }
       layout_.notes.insert(layout_.notes.end(), channels->notes.begin(), channels->notes.end());
+      return;
+    }
+    if (auto keyed = keyed_head(head_, first_row_, values_, layout_.separator)) {
+      layout_.columns = std::move(keyed->columns);
+      layout_.cells = layout_.columns.size();
+      layout_.notes.insert(layout_.notes.end(), keyed->notes.begin(), keyed->notes.end());
+      layout_.may_end_with_remark = true;  // of LabChart
       return;
     }
     take_row_with_remark();
@@ -387,6 +400,7 @@ class HeadReader {
 
   const SourceText& source_;
   const std::vector<Line>& head_;
+  const std::vector<bool>& values_;  ///< which cells of a row hold numbers
   std::size_t cells_in_row_;
   TextLayout& layout_;
   std::size_t first_row_;

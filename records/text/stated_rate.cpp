@@ -26,6 +26,7 @@ constexpr auto keys = std::to_array<Key>(
      {"sampling time", false},     {"sample time", false},     {"sampletime", false},      {"abtastzeit", false},
      {"hresolution", false, true},  // of Yokogawa
      {"delta_x", false, true},      // of LabVIEW
+     {"interval=", false, true},    // of LabChart
      {"xinc:", false, true},        // of Keysight
      {"tinc", false, true}});       // of Rigol
 

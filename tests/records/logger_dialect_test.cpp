@@ -1,6 +1,5 @@
 // Loggers, drives and robots: rows that are parts of one, units with a factor, types below the names.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 
 #include <string>
@@ -19,10 +18,6 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-std::string notes_of(const Record& record) {
-  return fmt::format("{}", fmt::join(record.notes(), "\n"));
-}
-
 TEST(LoggerDialect, EachHoldsTheSameNumbers) {
   const std::vector<Dialect> dialects{
       {"topics of ROS one below the other", written("time,u,y\n", "{t:.3f},{u:.4f},\n{t:.3f},,{y:.4f}\n")},
@@ -34,9 +29,18 @@ TEST(LoggerDialect, EachHoldsTheSameNumbers) {
        written("ETASAsciiItemFile\trecord\nsampleCount\t40\ntime\tu\ty\nf8\tf4\tf4\ns\tV\tum\n",
                "{t:.6f}\t{u:.4f}\t{y:.4f}\n")},
       {"types below the names, of a PLC", written("time;u;y\nLREAL;REAL;REAL\n", "{t:.3f};{u:.4f};{y:.4f}\n")},
-      {"settings with =, of LabChart",
-       written("Interval=\t0.001 s\nChannelTitle=\tu\ty\nRange=\t10.000 V\t10.000 um\n", "{t:.3f}\t{u:.4f}\t{y:.4f}\n"),
-       {.time = "1", .columns = {{"u", "2"}, {"y", "3"}}}},
+      {"settings with =, of LabChart", written("Interval=\t0.001 s\nChannelTitle=\tu\ty\nRange=\t10.000 V\t10.000 um\n",
+                                               "{t:.3f}\t{u:.4f}\t{y:.4f}\n")},
+      {"settings with =, without a time",
+       written("Interval=\t0.001 s\nChannelTitle=\tu\ty\nRange=\t10.000 V\t10.000 um\n", "{u:.4f}\t{y:.4f}\n")},
+      {"a time for each channel, of GW Instek",
+       written("Format,1.0B,Format,1.0B,\nSource,u,Source,y,\nSampling Period,1.0E-03,Sampling Period,1.0E-03,\n"
+               "Mode,Detail,Mode,Detail,\nWaveform Data,,Waveform Data,,\n",
+               "{t:.6E},{u:.4f},{t:.6E},{y:.4f},\n")},
+      {"a rate above the channels, of GW Instek",
+       written("Format,2.0B\nSource,u,y\nVertical Units,V,V\nSampling Period,1.0E-03\nMode,Detail\nWaveform Data\n",
+               "{u:.4f},{y:.4f},\n"),
+       {.rate = 1000.0}},
   };
   for (const Dialect& one : dialects) {
     expect_the_numbers(one);
@@ -58,6 +62,27 @@ TEST(LoggerDialect, UnitsBelowTypesAndBeforeBracketsAreKept) {
   EXPECT_EQ(split_header("u (LGR S/N: 20)").unit, "LGR S/N: 20");
   EXPECT_EQ(split_header("Y[2] [um]").unit, "um");
   EXPECT_EQ(split_header("x [rad/s] (filtered)").unit, "rad/s");
+}
+
+TEST(LoggerDialect, UnitsBehindKeysAreKept) {
+  const std::string row = "{t:.3f}\t{u:.4f}\t{y:.4f}\n";
+  const Record chart = parse_record(
+      "log.txt", written("Interval=\t0.001 s\nChannelTitle=\tu\ty\nRange=\t500.0 mV\t2.0 V\nUnitName=\t*\tum\n", row));
+  EXPECT_EQ(chart.column("u").unit, "mV");
+  EXPECT_EQ(chart.column("y").unit, "um");
+  EXPECT_THAT(notes_of(chart), HasSubstr("the units are those of Range= and UnitName= above the rows"));
+  // Steps of a converter are no volts.
+  for (const std::string_view mode : {"Detail", "Fast"}) {
+    const Record scope =
+        parse_record("log.csv",
+                     written(fmt::format("Source,u,Source,y,\nVertical Units,V,Vertical Units,V,\nMode,{0},Mode,{0},\n"
+                                         "Waveform Data,,Waveform Data,,\n",
+                                         mode),
+                             mode == "Fast" ? "{u:.4f}, ,{y:.4f}, ,\n" : "{t:.3f},{u:.4f},{t:.3f},{y:.4f},\n"),
+                     {.rate = 1000.0});
+    EXPECT_EQ(scope.column("u").unit, mode == "Fast" ? "" : "V");
+    EXPECT_EQ(notes_of(scope).find("steps of the converter") != std::string::npos, mode == "Fast");
+  }
 }
 
 TEST(LoggerDialect, PartsOfARowAreToldAndNeverMixTwoNumbers) {

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "records/text/cell_value.hpp"
+#include "records/text/scale_row.hpp"
 #include "records/text/unit_text.hpp"
 #include "support/names.hpp"
 
@@ -40,6 +42,8 @@ std::optional<KeyedHead> keyed_head(const std::vector<Line>& head, std::size_t f
   std::vector<std::string_view> names;
   std::vector<std::string> units;
   std::vector<std::string> keys_of_units;
+  std::string unit_of_time;
+  std::vector<std::pair<std::string_view, std::vector<std::string_view>>> scales;
   bool counts = false;
   bool ends_head = false;  // whether the line right above the rows says that a head ends here
   std::vector<Cell> cells;
@@ -51,11 +55,18 @@ std::optional<KeyedHead> keyed_head(const std::vector<Line>& head, std::size_t f
     std::string_view key = cells.front().text;
     const bool has_equals = key.ends_with('=');
     key.remove_suffix(has_equals ? 1 : 0);
-    ends_head = has_equals || is_one_of(key, {"waveform data"});
     const std::vector<std::string_view> said = said_of(cells);
-    if (is_one_of(key, {"source", "channeltitle"})) {
+    // `SymbolBased;True;True` right above the rows: one key more, and no names.
+    const bool is_setting =
+        std::ranges::any_of(said, [](std::string_view one) { return is_value(cell_value(one).kind); });
+    ends_head = has_equals || is_setting || is_one_of(key, {"waveform data"});
+    if (is_one_of(key, {"source", "channeltitle", "tracename", "name"})) {
       names = said;
-    } else if (is_one_of(key, {"vertical units", "range", "unitname"})) {
+    } else if (equal_ignoring_case(split_header(key).name, "SampleTime")) {
+      unit_of_time = split_header(key).unit;
+    } else if (is_key_of_scale(key)) {
+      scales.emplace_back(key, said);
+    } else if (is_key_of_units(key) || is_one_of(key, {"vertical units", "vunit", "range", "unitname"})) {
       for (std::size_t c = 0; c < said.size(); ++c) {
         units.resize(std::max(units.size(), said.size()));
         std::string unit = unit_in(said[c]);
@@ -84,10 +95,18 @@ std::optional<KeyedHead> keyed_head(const std::vector<Line>& head, std::size_t f
     const std::size_t signal = alone ? at : one_time ? at - 1 : at / 2;
     result.columns[c].cell = c;
     result.columns[c].name = is_time ? "t" : std::string(names[signal]);
+    result.columns[c].unit = is_time ? unit_of_time : std::string();
     if (!is_time && !counts && signal < units.size()) {
       result.columns[c].unit = units[signal];
     }
     ++at;
+  }
+  for (const auto& [key, said] : scales) {
+    for (std::size_t c = 0; c < std::min(said.size(), count); ++c) {
+      if (auto note = note_of_scale(key, said[c], names[c])) {
+        result.notes.push_back(std::move(*note));
+      }
+    }
   }
   if (counts) {
     result.notes.emplace_back(

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <map>
 #include <utility>
@@ -12,8 +11,8 @@
 
 #include "records/text/cell_value.hpp"
 #include "records/text/characters.hpp"
+#include "records/text/named_values.hpp"
 #include "records/text/time_cell.hpp"
-#include "records/text/unit_text.hpp"
 #include "records/time/time_unit.hpp"
 #include "support/counted.hpp"
 #include "support/names.hpp"
@@ -24,136 +23,6 @@ namespace {
 
 /// A log shows what it is in its first lines; before them a controller tells of its start.
 constexpr std::size_t looked_at = 400;
-
-/// A part of a line.
-struct Span {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-
-  [[nodiscard]] std::string_view of(std::string_view line) const { return line.substr(begin, end - begin); }
-};
-
-// ---- values with names ----------------------------------------------------------------------------------------------
-
-struct Pair {
-  Span name{};
-  Span value{};
-  Span unit{};  ///< behind the value
-};
-
-constexpr bool is_blank_character(char c) {
-  return c == ' ' || c == '\t';
-}
-
-constexpr bool is_of_name(char c) {
-  return is_letter(c) || is_digit(c) || std::string_view("_./[]-").find(c) != std::string_view::npos ||
-         static_cast<unsigned char>(c) >= 0x80;
-}
-
-constexpr bool may_begin_name(char c) {
-  return is_letter(c) || c == '_' || c == '/' || static_cast<unsigned char>(c) >= 0x80;
-}
-
-std::size_t behind_blanks(std::string_view line, std::size_t at) {
-  return std::min(line.find_first_not_of(" \t", at), line.size());
-}
-
-/// The end of a number; where there is none, its begin. A comma behind it separates.
-std::size_t end_of_number(std::string_view line, std::size_t at) {
-  std::size_t end = std::min(line.find_first_not_of("0123456789+-.,eE", at), line.size());
-  while (end > at && (line[end - 1] == ',' || !is_value(cell_value(line.substr(at, end - at)).kind))) {
-    --end;
-  }
-  return end;
-}
-
-bool ends_value(std::string_view line, std::size_t at) {
-  return at >= line.size() || is_blank_character(line[at]) || line[at] == ',' || line[at] == ';' || line[at] == '|';
-}
-
-/// A value and the unit behind it: 1.5, 1.5V, 1.5 V, true, "a word", and behind = any word at all.
-bool take_value(std::string_view line, std::size_t& at, char joint, Pair& pair) {
-  if (at < line.size() && line[at] == '"') {
-    const auto closing = line.find('"', at + 1);
-    if (closing == std::string_view::npos) {
-      return false;
-    }
-    pair.value = {.begin = at + 1, .end = closing};
-    at = closing + 1;
-    return ends_value(line, at);
-  }
-  const std::size_t end = end_of_number(line, at);
-  if (end > at) {
-    pair.value = {.begin = at, .end = end};
-    const std::size_t unit = behind_blanks(line, end);
-    const std::size_t behind = std::min(line.find_first_of(" \t,;|", unit), line.size());
-    if (unit < behind && is_known_unit(line.substr(unit, behind - unit))) {
-      pair.unit = {.begin = unit, .end = behind};
-      at = behind;
-      return true;
-    }
-    if (ends_value(line, end)) {
-      at = end;
-      return true;
-    }
-  }
-  const std::size_t behind =
-      joint == '='
-          ? std::min(line.find_first_of(" \t,;|", at), line.size())
-          : static_cast<std::size_t>(std::find_if_not(line.begin() + static_cast<std::ptrdiff_t>(at), line.end(),
-                                                      [](char c) { return is_letter(c) || c == '_'; }) -
-                                     line.begin());
-  pair.value = {.begin = at, .end = behind};
-  at = behind;
-  return pair.value.begin < behind && ends_value(line, behind);
-}
-
-/// The values from a place on to the end of the line; none where something else stands there. Names of several words
-/// only where commas stand between the values.
-std::vector<Pair> pairs_from(std::string_view line, std::size_t at, bool words) {
-  std::vector<Pair> pairs;
-  bool any_number = false;
-  bool commas_join = false;
-  while (at < line.size()) {
-    Pair pair{.name = {.begin = at}};
-    if (!may_begin_name(line[at])) {
-      return {};
-    }
-    while (at < line.size() && (is_of_name(line[at]) || (words && line[at] == ' '))) {
-      ++at;
-    }
-    pair.name.end = at;
-    while (pair.name.end > pair.name.begin && line[pair.name.end - 1] == ' ') {
-      --pair.name.end;
-    }
-    at = behind_blanks(line, at);
-    if (at >= line.size() || (line[at] != ':' && line[at] != '=')) {
-      return {};
-    }
-    const char joint = line[at];
-    at = behind_blanks(line, at + 1);
-    if (!take_value(line, at, joint, pair)) {
-      return {};
-    }
-    any_number = any_number || is_value(cell_value(pair.value.of(line)).kind);
-    pairs.push_back(pair);
-    const std::size_t end = at;
-    while (at < line.size() &&
-           (is_blank_character(line[at]) || line[at] == ',' || line[at] == ';' || line[at] == '|')) {
-      ++at;
-    }
-    const std::string_view between = line.substr(end, at - end);
-    if (words && at < line.size() && between.find_first_of(",;|") == std::string_view::npos) {
-      return {};
-    }
-    commas_join = commas_join || (at < line.size() && between == ",");
-  }
-  // `pos:1,2,u:3`: the comma in a value may separate as well.
-  const bool two_readings = commas_join && std::ranges::any_of(pairs, [&](const Pair& one) {
-                              return one.value.of(line).find(',') != std::string_view::npos;
-                            });
-  return any_number && !two_readings ? pairs : std::vector<Pair>{};
-}
 
 // ---- times before them ----------------------------------------------------------------------------------------------
 
@@ -219,7 +88,7 @@ LineTime time_before(std::string_view line, std::size_t limit) {
       }
     }
     const bool begins =
-        !is_blank_character(line[at]) && (at == 0 || joints.find(line[at - 1]) != std::string_view::npos);
+        line[at] != ' ' && line[at] != '\t' && (at == 0 || joints.find(line[at - 1]) != std::string_view::npos);
     if (!begins || joints.find(line[at]) != std::string_view::npos) {
       continue;
     }
@@ -250,12 +119,12 @@ LineTime time_before(std::string_view line, std::size_t limit) {
 
 struct LogLine {
   LineTime time{};
-  std::vector<Pair> pairs{};
+  std::vector<NamedValue> pairs{};
 
   /// The names of its values, in the order of the alphabet.
   [[nodiscard]] std::vector<std::string> names_of(std::string_view line) const {
     std::vector<std::string> names;
-    for (const Pair& one : pairs) {
+    for (const NamedValue& one : pairs) {
       names.emplace_back(one.name.of(line));
     }
     std::ranges::sort(names);
@@ -263,39 +132,25 @@ struct LogLine {
   }
 };
 
-/// The first place from which values with names go on to the end of the line. Where names of several words give more
-/// of them, those: of `motor speed: 1, motor current: 2`, the last word of the last name is a name as well.
-std::vector<Pair> pairs_of(std::string_view line) {
-  std::vector<Pair> best;
-  for (const bool words : {false, true}) {
-    for (std::size_t at = 0; at < line.size(); ++at) {
-      const bool begins = at == 0 || std::string_view(" \t]>)|,").find(line[at - 1]) != std::string_view::npos;
-      std::vector<Pair> pairs = begins && may_begin_name(line[at]) ? pairs_from(line, at, words) : std::vector<Pair>{};
-      if (pairs.empty()) {
-        continue;
-      }
-      if (pairs.size() > best.size()) {
-        best = std::move(pairs);
-      }
-      break;
-    }
-  }
-  return best;
-}
-
 /// Nothing where a line holds no values with names, or one name twice.
 std::optional<LogLine> log_line(std::string_view line) {
   line = line.substr(0, line.find_last_not_of(" \t,;") + 1);
   if (line.find_first_of(":=") == std::string_view::npos) {
     return std::nullopt;
   }
-  LogLine result{.pairs = pairs_of(line)};
+  LogLine result{.pairs = named_values(line)};
   const auto names = result.names_of(line);
   if (names.empty() || std::ranges::adjacent_find(names) != names.end()) {
     return std::nullopt;
   }
   result.time = time_before(line, result.pairs.front().name.begin);
   return result;
+}
+
+/// A row of a table: digits and marks, and letters at most of 1e-3 and of a date.
+bool is_row_of_numbers(std::string_view line) {
+  return std::ranges::none_of(
+      line, [](char c) { return is_letter(c) && std::string_view("eETZ").find(c) == std::string_view::npos; });
 }
 
 /// What the rows of a log have in common.
@@ -338,30 +193,35 @@ class LogWriter {
     std::map<std::vector<std::string>, std::size_t> counts;
     std::vector<std::string> order;
     std::size_t lines = 0;
-    std::size_t found = 0;
+    std::size_t plain = 0;
     for_each_line(looked_at, [&](std::string_view line, bool is_skipped) {
-      lines += is_skipped || trimmed(line).empty() ? 0 : 1;
-      const auto one = is_skipped ? std::nullopt : log_line(line);
+      const bool is_said = !is_skipped && !trimmed(line).empty();
+      lines += is_said ? 1 : 0;
+      const auto one = is_said ? log_line(line) : std::nullopt;
       if (!one) {
+        plain += is_said && is_row_of_numbers(line) ? 1 : 0;
         return;
       }
-      ++found;
       ++counts[one->names_of(line)];
       shape_.time = shape_.time.kind == CellKind::Text ? one->time : shape_.time;
-      for (const Pair& pair : one->pairs) {
+      for (const NamedValue& pair : one->pairs) {
         if (std::ranges::find(order, pair.name.of(line)) == order.end()) {
           order.emplace_back(pair.name.of(line));
         }
       }
     });
-    if (found < 2 || 4 * found < lines) {
-      return false;
-    }
-    std::size_t most = 0;
+    std::size_t most = 2;  // a name that comes once is a setting of the head
     for (const auto& [names, count] : counts) {
       most = std::max(most, count);
     }
-    std::erase_if(counts, [&](const auto& one) { return 10 * one.second < most; });
+    std::erase_if(counts, [&](const auto& one) { return one.second < 2 || 10 * one.second < most; });
+    std::size_t rows = 0;
+    for (const auto& [names, count] : counts) {
+      rows += count;
+    }
+    if (rows == 0 || 4 * rows < lines || rows <= plain) {
+      return false;
+    }
     std::ranges::copy_if(order, std::back_inserter(shape_.names), [&](const std::string& name) {
       return std::ranges::any_of(counts, [&](const auto& one) { return std::ranges::binary_search(one.first, name); });
     });
@@ -419,10 +279,12 @@ class LogWriter {
     for (std::size_t k = 0; in_order && k < one.pairs.size(); ++k) {
       in_order = one.pairs[k].name.of(line) == shape_.names[k];
     }
-    for (const Pair& pair : one.pairs) {
+    for (const NamedValue& pair : one.pairs) {
       const CellValue value = cell_value(pair.value.of(line));
       has_comma_ = has_comma_ || value.has_comma;
-      has_reason_ = has_reason_ || !is_value(value.kind) || value.kind == CellKind::DateTime;
+      const bool has_unit = pair.unit.end > pair.unit.begin;
+      const bool has_blanks = pair.value.begin > pair.name.end + 1;
+      has_reason_ = has_reason_ || has_unit || has_blanks || !is_value(value.kind) || value.kind == CellKind::DateTime;
     }
     has_reason_ = has_reason_ || !in_order;
     return in_order ? row_in_place(line, one) : row_in_order(line, one);
@@ -436,7 +298,7 @@ class LogWriter {
       put(one.time.span.begin, without_group(one.time.span.of(line)));
     }
     for (std::size_t k = 0; k < one.pairs.size(); ++k) {
-      const Pair& pair = one.pairs[k];
+      const NamedValue& pair = one.pairs[k];
       if (has_time_ || k > 0) {
         row[pair.name.begin - 1] = '\t';
       }
@@ -455,8 +317,8 @@ class LogWriter {
     std::string row = has_time_ ? without_group(one.time.span.of(line)) : std::string();
     for (std::size_t k = 0; k < shape_.names.size(); ++k) {
       row += has_time_ || k > 0 ? "\t" : "";
-      const auto pair =
-          std::ranges::find_if(one.pairs, [&](const Pair& other) { return other.name.of(line) == shape_.names[k]; });
+      const auto pair = std::ranges::find_if(
+          one.pairs, [&](const NamedValue& other) { return other.name.of(line) == shape_.names[k]; });
       if (pair != one.pairs.end()) {
         row += pair->value.of(line);
         row += pair->unit.end > pair->unit.begin ? fmt::format(" {}", pair->unit.of(line)) : std::string();

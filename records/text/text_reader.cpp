@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "records/text/bracketed_rows.hpp"
 #include "records/text/cell_mend.hpp"
 #include "records/text/decimal_marks.hpp"
 #include "records/text/encoding.hpp"
@@ -35,6 +36,9 @@ class Reader {
     if (text.empty_bytes > 0) {
       table_.notes.push_back(
           fmt::format("the last {} of the file were laid out and not written", counted(text.empty_bytes, "byte")));
+    }
+    if (clear_brackets(text.text)) {
+      table_.notes.emplace_back("each row stands in brackets");
     }
     source_ = std::make_shared<SourceText>(SourceText{.file = file, .text = std::move(text.text)});
     if (auto log = table_of_log(source_->text, options.skip)) {

@@ -44,6 +44,7 @@ TEST(LogLine, EachHoldsTheSameNumbers) {
        {.columns = {{"u", "the u"}, {"y", "the y"}}}},
       {"other lines between", written("", "[1717408800.{k:03}] u={u:.4f} y={y:.4f}\n[1717408800.{k:03}] tick\n")},
       {"a time of the row's own", written("", "[10:00:00.{k:02}7] t={t:.3f} u={u:.4f} y={y:.4f}\n")},
+      {"a time among the values", written("", "stage: time: 10:00:00.{k:03}, u: {u:.4f}, y: {y:.4f}\n")},
       {"commas and semicolons", written("", "[1717408800.{k:03}] u={u:.4f}; y={y:.4f};\r\n")},
   };
   for (const Dialect& one : logs) {
@@ -88,8 +89,9 @@ TEST(LogLine, PlacesAreThoseOfTheFile) {
 
 TEST(LogLine, WhatIsNoLogIsNone) {
   for (const std::string_view text :
-       {"u:1,y:3\nu:2,y:6\n", "t,u,y\n0,1,3\n1,2,6\n", "Gain: 3\nt,u\n0,1\n1,2\n2,3\n3,4\n4,5\n",
-        "[INFO] tick\n[INFO] tock\n", "pos:1,2,u:3\npos:4,5,u:6\n", "[1234] u=1\n[1234] u=2\n",
+       {"u:1,y:3\nu:2,y:6\n", "t,u,y\n0,1,3\n1,2,6\n", "Gain: 3\nOffset: 2\nBias: 1\nt,u\n0,1\n1,2\n2,3\n3,4\n4,5\n",
+        "u: 3\nu: 2\nu: 1\nt,u\n0,1\n1,2\n2,3\n3,4\n4,5\n", "Kp=3\nKi=2\nKd=0\n", "[INFO] tick\n[INFO] tock\n",
+        "pos:1,2,u:3\npos:4,5,u:6\n", "[1234] u=1\n[1234] u=2\n",
         "[1717408800.001] u=1 u=2\n[1717408800.002] u=1 u=2\n"}) {
     EXPECT_FALSE(table_of_log(text, 0)) << text;
   }

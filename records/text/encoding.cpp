@@ -119,6 +119,17 @@ std::size_t first_control(std::string_view text) {
                    "export the record as CSV; a damaged file has to be saved anew.");
 }
 
+/// What a terminal is told between the words, ESC [ 0 ; 3 2 m of a colour, as blanks.
+void clear_colours(std::string& text) {
+  for (std::size_t at = 0; (at = text.find("\x1B[", at)) != std::string::npos;) {
+    const auto end = text.find_first_not_of("0123456789;", at + 2);
+    if (end == std::string::npos || (text[end] != 'm' && text[end] != 'K')) {
+      return;
+    }
+    std::fill(text.begin() + static_cast<std::ptrdiff_t>(at), text.begin() + static_cast<std::ptrdiff_t>(end) + 1, ' ');
+  }
+}
+
 /// Old programs end lines by CR alone; a name in quotes may go over several lines, as in spreadsheets. Both keep the
 /// length of the text; a line end in a name becomes the vertical tab, which is a blank.
 void settle_line_ends(std::string& text) {
@@ -179,6 +190,7 @@ DecodedText decoded(const std::string& file, std::string bytes) {
   if (empty > 2) {
     bytes.resize(written + 1);
   }
+  clear_colours(bytes);
   DecodedText result = decoded_bytes(file, std::move(bytes));
   result.empty_bytes = empty > 2 ? empty : 0;
   settle_line_ends(result.text);

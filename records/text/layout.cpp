@@ -10,6 +10,7 @@
 
 #include "records/text/cell_value.hpp"
 #include "records/text/channel_head.hpp"
+#include "records/text/keyed_head.hpp"
 #include "records/text/names_above.hpp"
 #include "records/text/row_block.hpp"
 #include "records/text/scale_row.hpp"
@@ -39,16 +40,9 @@ bool is_setting(const std::vector<Cell>& cells) {
   return cells.front().text.ends_with('=') || (cells.size() <= 2 && cells.front().text.ends_with(':'));
 }
 
-/// `f8,f4,f4` and `REAL;LREAL;BOOL` below the names: how the numbers were stored.
+/// `f8,f4,f4` and `REAL;LREAL;BOOL` below the names.
 bool states_types(const std::vector<Cell>& cells) {
-  return cells.size() > 1 && std::ranges::all_of(cells, [](const Cell& cell) {
-           return is_one_of(cell.text,
-                            {"f4",     "f8",      "i1",      "i2",     "i4",       "i8",     "u1",      "u2",
-                             "u4",     "u8",      "float",   "double", "single",   "real",   "lreal",   "int",
-                             "dint",   "uint",    "udint",   "sint",   "usint",    "word",   "dword",   "byte",
-                             "bool",   "int8",    "int16",   "int32",  "int64",    "uint8",  "uint16",  "uint32",
-                             "uint64", "float32", "float64", "dbl",    "datetime", "string", "boolean", "integer"});
-         });
+  return cells.size() > 1 && std::ranges::all_of(cells, [](const Cell& cell) { return is_number_type(cell.text); });
 }
 
 /// Without what cannot be seen in it: the line ends of a name over several lines, blanks of other widths, and the
@@ -71,7 +65,12 @@ std::string plain_name(std::string_view cell) {
 class HeadReader {
  public:
   HeadReader(const SourceText& source, const std::vector<Line>& head, const RowBlock& block, TextLayout& layout)
-      : source_(source), head_(head), cells_in_row_(block.values.size()), layout_(layout), first_row_(block.first) {}
+      : source_(source),
+        head_(head),
+        values_(block.values),
+        cells_in_row_(block.values.size()),
+        layout_(layout),
+        first_row_(block.first) {}
 
   void read() {
     layout_.stated = stated_rate(head_, first_row_);
@@ -81,6 +80,13 @@ class HeadReader {
         layout_.columns.push_back({.name = channel.name, .unit = channel.unit});
       }
       layout_.notes.insert(layout_.notes.end(), channels->notes.begin(), channels->notes.end());
+      return;
+    }
+    if (auto keyed = keyed_head(head_, first_row_, values_, layout_.separator)) {
+      layout_.columns = std::move(keyed->columns);
+      layout_.cells = layout_.columns.size();
+      layout_.notes.insert(layout_.notes.end(), keyed->notes.begin(), keyed->notes.end());
+      layout_.may_end_with_remark = true;  // of LabChart
       return;
     }
     take_row_with_remark();
@@ -259,6 +265,7 @@ class HeadReader {
         cells.size() + 1 == cells_in_row_ && !ends_empty() ? shift_by_number(line, cells.size()) : 0;
     for (std::size_t c = 0; c < std::min(cells.size(), cells_in_row_); ++c) {
       HeaderName found = split_header(plain_name(cells[c].text));
+      found.unit = is_number_type(found.unit) ? std::string() : std::move(found.unit);  // u(REAL) of Omron
       layout_.columns[c + shift] = {.name = std::move(found.name), .unit = unit_of_word(found.unit), .cell = c};
     }
   }
@@ -354,6 +361,7 @@ class HeadReader {
     std::vector<Cell> cells;
     while (line > 0) {
       const std::string_view text = head_[--line].text;
+      take_unit_of_all(text, channels);
       if (is_blank(text, layout_.separator) || is_comment(text, layout_.separator)) {
         continue;
       }
@@ -385,8 +393,26 @@ class HeadReader {
     }
   }
 
+  /// `Units:(mV),` of OWON and `#UNITS:mV` of Hantek: one unit for all channels that have none.
+  void take_unit_of_all(std::string_view line, const std::vector<std::size_t>& channels) {
+    const std::string_view text = trimmed(line, " \t#%/\";,|");
+    const std::string unit = unit_of_word(without_unit_key(text));
+    if (without_unit_key(text).size() == text.size() || !is_known_unit(unit)) {
+      return;
+    }
+    bool any = false;
+    for (const std::size_t c : channels) {
+      any = any || layout_.columns[c].unit.empty();
+      layout_.columns[c].unit = layout_.columns[c].unit.empty() ? unit : layout_.columns[c].unit;
+    }
+    if (any) {
+      layout_.notes.push_back(fmt::format("the unit of the channels is {}, by \"{}\" above the rows", unit, text));
+    }
+  }
+
   const SourceText& source_;
   const std::vector<Line>& head_;
+  const std::vector<bool>& values_;  ///< which cells of a row hold numbers
   std::size_t cells_in_row_;
   TextLayout& layout_;
   std::size_t first_row_;

@@ -19,7 +19,7 @@ namespace {
 /// Of WinCC, InfluxDB, Wonderware, Kepware, Grafana, Home Assistant and pandas.
 constexpr auto names_of_signals =
     std::to_array<std::string_view>({"VarName", "_field", "TagName", "tag", "variable", "signal", "_NAME", "name",
-                                     "series", "entity_id", "metric", "channel"});
+                                     "series", "entity_id", "metric", "channel", "topic"});
 constexpr auto names_of_values = std::to_array<std::string_view>({"VarValue", "_value", "value", "vValue", "state"});
 
 template <class Predicate>

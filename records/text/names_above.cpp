@@ -18,10 +18,13 @@ std::size_t filled(const std::vector<Cell>& cells) {
   return static_cast<std::size_t>(std::ranges::count_if(cells, [](const Cell& cell) { return !cell.text.empty(); }));
 }
 
-bool repeats_itself(const std::vector<Cell>& cells) {
+/// Whether a name stands twice. `units` is the row below: what is in a unit of time may, each signal with its own.
+bool repeats_itself(const std::vector<Cell>& cells, const std::vector<Cell>* units = nullptr) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     for (std::size_t k = 0; k < i && !cells[i].text.empty(); ++k) {
-      if (equal_ignoring_case(cells[i].text, cells[k].text)) {
+      const bool is_time =
+          units != nullptr && i < units->size() && time_unit(without_brackets((*units)[i].text)).has_value();
+      if (!is_time && equal_ignoring_case(cells[i].text, cells[k].text)) {
         return true;
       }
     }
@@ -94,7 +97,7 @@ std::size_t row_of_names(std::span<const HeadLine> words) {
     const std::vector<Cell>& high = words[names + 1].cells;
     const bool odd = repeats_itself(low) || filled(low) < filled(high);
     const bool second = states_units(low) || (odd && !names_time(low) && !has_value(high));
-    if (!second || repeats_itself(high) || filled(high) < filled(low)) {
+    if (!second || repeats_itself(high, &low) || filled(high) < filled(low)) {
       break;
     }
     ++names;

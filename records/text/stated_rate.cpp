@@ -24,8 +24,10 @@ constexpr auto keys = std::to_array<Key>(
      {"sample rate", true},        {"sample_rate", true},      {"samplerate", true},       {"abtastrate", true},
      {"sampling interval", false}, {"sample interval", false}, {"sampling period", false}, {"sample period", false},
      {"sampling time", false},     {"sample time", false},     {"sampletime", false},      {"abtastzeit", false},
+     {"sample_time", false},       {"cycle time", false},      {"cycletime", false},       {"zykluszeit", false},
      {"hresolution", false, true},  // of Yokogawa
      {"delta_x", false, true},      // of LabVIEW
+     {"interval=", false, true},    // of LabChart
      {"xinc:", false, true},        // of Keysight
      {"tinc", false, true}});       // of Rigol
 

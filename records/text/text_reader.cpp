@@ -7,10 +7,12 @@
 #include <string_view>
 #include <utility>
 
+#include "records/text/bracketed_rows.hpp"
 #include "records/text/cell_mend.hpp"
 #include "records/text/decimal_marks.hpp"
 #include "records/text/encoding.hpp"
 #include "records/text/layout.hpp"
+#include "records/text/log_line.hpp"
 #include "records/text/long_table.hpp"
 #include "records/time/time_unit.hpp"
 #include "support/counted.hpp"
@@ -35,8 +37,16 @@ class Reader {
       table_.notes.push_back(
           fmt::format("the last {} of the file were laid out and not written", counted(text.empty_bytes, "byte")));
     }
+    if (clear_brackets(text.text)) {
+      table_.notes.emplace_back("each row stands in brackets");
+    }
     source_ = std::make_shared<SourceText>(SourceText{.file = file, .text = std::move(text.text)});
-    layout_ = layout_of(*source_, options.skip);
+    if (auto log = table_of_log(source_->text, options.skip)) {
+      source_->text = std::move(log->text);
+      layout_ = std::move(log->layout);
+    } else {
+      layout_ = layout_of(*source_, options.skip);
+    }
     marks_ = DecimalMarks(*source_, diagnostics_, layout_.cells);
     source_->separator = layout_.separator;
     names_ = layout_.names ? source_->line_at(*layout_.names).text : std::string_view();

@@ -444,8 +444,11 @@ std::optional<CellValue> time_cell(std::string_view text) {
   if (!clock) {
     return std::nullopt;
   }
-  if (year_to_come) {  // Jun  3 10:00:00.001 2024
+  if (year_to_come) {  // Jun  3 10:00:00.001 2024, and 10:00:00 CEST 2024 of Java
     skip(rest, " ");
+    if (!rest.empty() && is_letter(rest.front())) {  // one zone for all rows does not count
+      rest.remove_prefix(rest.rfind(' ') == std::string_view::npos ? 0 : rest.rfind(' ') + 1);
+    }
     const std::size_t before = rest.size();
     const auto year = take_digits(rest, 4);
     day = year && before - rest.size() == 4 ? day_of(*year, named.month, named.day) : std::nullopt;

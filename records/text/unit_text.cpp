@@ -202,6 +202,14 @@ std::optional<ScaledUnit> scaled_unit(std::string_view text) {
   return std::nullopt;
 }
 
+bool is_number_type(std::string_view text) {
+  return is_one_of(
+      text, {"f4",     "f8",     "i1",     "i2",      "i4",      "i8",   "u1",       "u2",     "u4",      "u8",
+             "float",  "double", "single", "real",    "lreal",   "int",  "dint",     "uint",   "udint",   "sint",
+             "usint",  "word",   "dword",  "byte",    "bool",    "int8", "int16",    "int32",  "int64",   "uint8",
+             "uint16", "uint32", "uint64", "float32", "float64", "dbl",  "datetime", "string", "boolean", "integer"});
+}
+
 bool is_key_of_units(std::string_view text) {
   return is_one_of(
       text,

@@ -32,4 +32,7 @@ struct ScaledUnit {
 /// V of "Unit: V".
 [[nodiscard]] std::string_view without_unit_key(std::string_view text);
 
+/// How a number was stored: f8, REAL, int16.
+[[nodiscard]] bool is_number_type(std::string_view text);
+
 }  // namespace hysteron::records

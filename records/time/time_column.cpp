@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "records/time/counter.hpp"
+#include "records/time/packed_clock.hpp"
 #include "records/time/time_unit.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -70,6 +71,14 @@ bool is_time_of_signal(const Table& table, std::size_t index) {
   return index + 1 < table.columns.size() && is_time_of(table.columns[index].name, table.columns[index + 1].name);
 }
 
+/// The first column in a unit of time, and each further one of the same name: the X [s] of a drive's oscilloscope.
+bool is_time_by_unit(const Table& table, std::size_t index) {
+  const TableColumn& column = table.columns[index];
+  const TableColumn& first = table.columns.front();
+  return column.is_named && time_unit(column.unit) && time_unit(first.unit) &&
+         (index == 0 || equal_ignoring_case(column.name, first.name));
+}
+
 bool has_numbered_times(const Table& table) {
   const std::size_t count = table.columns.size();
   if (count < 4 || count % 2 != 0) {
@@ -103,7 +112,7 @@ std::vector<std::size_t> candidates(const Table& table) {
       continue;
     }
     if ((numbered && i % 2 == 0) || is_clock_kind(column.kind) || (column.is_named && time_name(column.name)) ||
-        is_time_of_signal(table, i) || (i == 0 && column.is_named && time_unit(column.unit))) {
+        is_time_of_signal(table, i) || is_time_by_unit(table, i)) {
       result.push_back(i);
     }
   }
@@ -185,7 +194,9 @@ FoundUnit unit_of(const TableColumn& column, const ReadOptions& options) {
     return result;
   }
   const std::optional<TimeName> name = time_name(column.name);
-  const std::string stated = !options.time_unit.empty() ? options.time_unit : column.unit;
+  const std::string stated = !options.time_unit.empty()     ? options.time_unit
+                             : is_zone_of_time(column.unit) ? std::string()
+                                                            : column.unit;
   const std::optional<TimeUnit> epoch = column.stamps.empty() ? std::nullopt : epoch_unit(column.stamps.front().whole);
   if (!stated.empty()) {
     const auto unit = time_unit(stated);
@@ -245,7 +256,8 @@ std::vector<double> raw_times(const TableColumn& column, const std::vector<Stamp
 /// their size, from 2000 to 2099, and by a step that is a plain number of seconds only where it counts days.
 void refuse_days_without_unit(const TableColumn& column, const ReadOptions& options) {
   const std::optional<TimeName> name = time_name(column.name);
-  if (column.kind != CellKind::Number || !column.unit.empty() || !options.time_unit.empty() || (name && name->unit)) {
+  const bool has_unit = !column.unit.empty() && !is_zone_of_time(column.unit);
+  if (column.kind != CellKind::Number || has_unit || !options.time_unit.empty() || (name && name->unit)) {
     return;
   }
   const double first = column.values.front();
@@ -323,6 +335,13 @@ Found times_of_column(const Table& table, std::size_t index, std::optional<std::
     resolution.scale(unit.unit.seconds(1.0));
   }
   result.grid = find_time_grid(decimal ? raw : result.seconds, resolution);
+  auto clock = result.grid.fault && column.kind == CellKind::Number ? unpacked_clock(raw) : std::nullopt;
+  if (clock) {
+    result.seconds = std::move(*clock);
+    result.grid = find_time_grid(result.seconds, resolution);
+    result.note = ", whose numbers are times of day";
+    return result;
+  }
   if (decimal) {
     result.grid.sample_time = unit.unit.seconds(result.grid.sample_time);
   }

@@ -36,6 +36,8 @@ constexpr auto spellings = std::to_array<Spelling>({
     {"sek", second},
     {"sekunde", second},
     {"sekunden", second},
+    {"\xE7\xA7\x92", second},              // of Japanese and Chinese
+    {"\xD1\x81\xD0\xB5\xD0\xBA", second},  // of Russian
     {"ms", milli},
     {"msec", milli},
     {"msecs", milli},
@@ -109,6 +111,21 @@ constexpr auto names = std::to_array<std::string_view>({
     "temps",
     "tiempo",
     "tempo",
+    "tijd",
+    "czas",
+    "tid",
+    "aika",
+    "timp",
+    "zaman",
+    "cas",
+    "\xC4\x8D"
+    "as",                                        // čas
+    "id\xC5\x91",                                // idő
+    "\xD0\x92\xD1\x80\xD0\xB5\xD0\xBC\xD1\x8F",  // Время
+    "\xD0\xB2\xD1\x80\xD0\xB5\xD0\xBC\xD1\x8F",  // время
+    "\xE6\x99\x82\xE9\x96\x93",                  // of Japanese
+    "\xE6\x97\xB6\xE9\x97\xB4",                  // of Chinese
+    "\xEC\x8B\x9C\xEA\xB0\x84",                  // of Korean
     "epoch",
     "_time",
     "__time",
@@ -146,6 +163,12 @@ std::optional<TimeUnit> time_unit(std::string_view text) {
     return one.text.size() == 1 ? one.text == text : equal_ignoring_case(one.text, text);
   });
   return found == spellings.end() ? std::nullopt : std::optional(found->unit);
+}
+
+bool is_zone_of_time(std::string_view text) {
+  text = trimmed(text);
+  const std::string_view word = text.substr(0, std::min(text.find_first_of("+- "), text.size()));
+  return is_one_of(word, {"utc", "gmt", "local", "cet", "cest", "mez", "mesz", "est", "edt", "pst", "pdt", "jst"});
 }
 
 std::optional<TimeUnit> epoch_unit(std::int64_t number) {
@@ -194,7 +217,11 @@ std::optional<TimeName> time_name(std::string_view name) {
   const auto with = [&](std::string_view base, std::string_view unit) -> std::optional<TimeName> {
     base = trimmed(base);
     const auto found = trimmed(unit) == "S" ? std::optional(second) : time_unit(unit);  // TIME_S; alone it is siemens
-    return found && is_one_of(base, names) ? std::optional(TimeName{.unit = found}) : std::nullopt;
+    // /cmd/header/stamp/sec: the path before the last two words says of what.
+    const auto path = base.find_last_of("./");
+    const std::string_view word = path == std::string_view::npos ? base : base.substr(path + 1);
+    return found && (is_one_of(base, names) || is_one_of(word, names)) ? std::optional(TimeName{.unit = found})
+                                                                       : std::nullopt;
   };
   if (name.ends_with(')') || name.ends_with(']')) {
     const auto open = name.find_last_of("([");

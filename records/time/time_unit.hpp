@@ -22,6 +22,9 @@ struct TimeUnit {
 /// s, sec, seconds, ms, us, µs, ns, min, h, d and their words; nothing where it is none.
 [[nodiscard]] std::optional<TimeUnit> time_unit(std::string_view text);
 
+/// UTC, local, CEST, UTC+2: in brackets behind the time they are no unit.
+[[nodiscard]] bool is_zone_of_time(std::string_view text);
+
 /// The unit in which numbers since 1970 (or 1601, of FILETIME) of this size are; nothing where they are no such
 /// numbers. One unit alone makes each of them a year from 2001 to 2286: the sizes lie apart by a factor of 1000.
 [[nodiscard]] std::optional<TimeUnit> epoch_unit(std::int64_t number);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,6 +36,11 @@ struct Dialect {
   std::string text;
   ReadOptions options{};
 };
+
+/// What was understood, a line each.
+inline std::string notes_of(const Record& record) {
+  return fmt::format("{}", fmt::join(record.notes(), "\n"));
+}
 
 /// u, and y = 3 u, every millisecond.
 inline void expect_the_numbers(const Dialect& one) {

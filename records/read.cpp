@@ -17,6 +17,7 @@
 #include "records/scaled_unit.hpp"
 #include "records/statistics.hpp"
 #include "records/table.hpp"
+#include "records/text/unit_text.hpp"
 #include "records/time/row_order.hpp"
 #include "records/time/split_time.hpp"
 #include "records/time/time_column.hpp"
@@ -87,7 +88,7 @@ void rename(Table& table, const ReadOptions& options) {
     TableColumn& column = table.columns[*found[k]];
     column.in_file = column.name;
     column.name = options.columns[k].name;
-    column.unit = options.columns[k].unit.empty() ? column.unit : options.columns[k].unit;
+    column.unit = options.columns[k].unit.empty() ? column.unit : unit_of_word(options.columns[k].unit);
     column.is_named = true;
   }
 }

@@ -90,6 +90,23 @@ std::string excerpt(const Place& place, Sources& sources, const RenderOptions& o
   return result;
 }
 
+/// Loggers of Windows write µ and ° as one byte: what is no UTF-8 is shown as the reader of records takes it.
+std::string from_latin_1(std::string_view bytes) {
+  constexpr unsigned first_shown = 0xA0;  // below it are controls
+  std::string text;
+  text.reserve(bytes.size() + bytes.size() / 8);
+  for (const char c : bytes) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= first_shown) {
+      text += static_cast<char>(0xC0U | (byte >> 6U));
+      text += static_cast<char>(0x80U | (byte & 0x3FU));
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
 nlohmann::json place_as_json(const Place& place) {
   nlohmann::json result = {{"file", printable(place.file)}};
   if (place.line > 0) {
@@ -104,7 +121,8 @@ nlohmann::json place_as_json(const Place& place) {
 
 }  // namespace
 
-Sources::Lines::Lines(std::string whole) : text(std::move(whole)) {
+Sources::Lines::Lines(std::string whole)
+    : text(first_invalid_utf8(whole) == std::string_view::npos ? std::move(whole) : from_latin_1(whole)) {
   starts.push_back(text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', end + 1)) {
     starts.push_back(end + 1);

@@ -26,10 +26,12 @@ void convert(records::Record& record, const Graph& graph, const Port& port, Diag
   const std::string as_in_the_diagram =
       option_value(fmt::format("{}={}[{}]", port.name, column->name_in_file(), port.unit));
   if (!wanted || !found) {
-    diagnostics.warning(error::unit_of_column, record.place(port.name, 0),
-                        fmt::format("The unit {} of column {} is not known; its numbers are taken to be in {}.",
-                                    column->unit, column->name, port.unit),
-                        fmt::format("say the unit, as --column {}.", as_in_the_diagram), {of_port});
+    diagnostics.warning(
+        error::unit_of_column, record.place(port.name, 0),
+        fmt::format("The unit {} of column {} is not known; its numbers are taken to be in {}.", column->unit,
+                    column->name, port.unit),
+        fmt::format("say the unit in which its numbers are: --column {}, if that is it.", as_in_the_diagram),
+        {of_port});
     return;
   }
   const std::optional<double> factor = units::conversion(*found, *wanted);

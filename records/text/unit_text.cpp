@@ -155,6 +155,12 @@ std::string unit_of_word(std::string_view text) {
                                               {"Degree", "deg"},
                                               {"Degrees", "deg"},
                                               {"Grad", "deg"},
+                                              {"U/min", "rpm"},
+                                              {"Upm", "rpm"},
+                                              {"Umdr/min", "rpm"},
+                                              {"r/min", "rpm"},
+                                              {"rev/min", "rpm"},
+                                              {"RPM", "rpm"},
                                               {"percent", "%"},
                                               {"Prozent", "%"}});
   const auto found = std::ranges::find_if(words, [&](const Word& one) { return equal_ignoring_case(one.word, text); });

@@ -132,6 +132,22 @@ TEST(LoggerDialect, OneUnitOfAllChannelsIsTakenAndSaid) {
   }
 }
 
+/// Taken for rad/s, they would make a machine 9.5 times too fast.
+TEST(LoggerDialect, TurnsAMinuteAreRpm) {
+  for (const std::string_view unit : {"U/min", "Upm", "r/min", "rev/min", "RPM", "rpm"}) {
+    EXPECT_EQ(parse_record("log.csv", written(fmt::format("t,u,y [{}]\n", unit), "{t:.3f},{u:.4f},{y:.4f}\n"))
+                  .column("y")
+                  .unit,
+              "rpm");
+    EXPECT_EQ(parse_record("log.csv", written(fmt::format("t,u,y\ns,V,{}\n", unit), "{t:.3f},{u:.4f},{y:.4f}\n"))
+                  .column("y")
+                  .unit,
+              "rpm");
+  }
+  const Record stated = parse_record("log.csv", "t,u\n0,1\n1,2\n", {.columns = {{"u", "u", "U/min"}}});
+  EXPECT_EQ(stated.column("u").unit, "rpm");
+}
+
 TEST(LoggerDialect, TypesAndZonesInBracketsAreNoUnits) {
   const std::string row = "{t:.3f},{u:.4f},{y:.4f}\n";
   EXPECT_EQ(parse_record("log.csv", written("Time (UTC),u(REAL),y(LREAL)\n", row)).column("u").unit, "");

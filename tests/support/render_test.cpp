@@ -68,6 +68,9 @@ TEST(Render, CaretsStayBelowTheirCharacters) {
   auto beyond_ascii = with("(* µΩ *) XNI\n");
   EXPECT_EQ(lines_two_and_three(as_text(at(1, 10, 3), beyond_ascii)),
             std::pair(std::string("    1 | (* µΩ *) XNI"), std::string("      |          ^^^")));
+  auto windows = with("Weg [\xB5m];XNI\n");  // as loggers of Windows write it
+  EXPECT_EQ(lines_two_and_three(as_text(at(1, 10, 3), windows)),
+            std::pair(std::string("    1 | Weg [µm];XNI"), std::string("      |          ^^^")));
 }
 
 TEST(Render, CaretsEndWithTheLine) {

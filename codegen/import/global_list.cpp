@@ -56,7 +56,9 @@ GlobalList read_global_list(std::string_view declaration) {
       // A comment behind it on its line is its own.
       const std::string_view rest = declaration.substr(end, one.offset - end);
       end += std::min(rest.find('\n'), rest.size());
-      variable.text = fmt::format("{}\n  {}\nEND_VAR", head, declaration.substr(begin, end - begin));
+      std::string_view text = declaration.substr(begin, end - begin);
+      text = text.substr(0, text.find_last_not_of(" \t\r") + 1);
+      variable.text = fmt::format("{}\n  {}\nEND_VAR", head, text);
       list.variables.push_back(std::move(variable));
     }
   }

@@ -179,7 +179,7 @@ std::string sentence_of(const Diagnosis& found, const Rules& rules) {
                           ? std::string()
                           : fmt::format("; next best {}, {}", words_of_family(next->family), percent(next->alone)));
   if (!beside.empty()) {
-    text += fmt::format(", with {} {}", fmt::join(beside, " and "), percent(first.closed));
+    text += fmt::format(". With {} it closes {}", fmt::join(beside, " and "), percent(first.closed));
   }
   std::vector<std::string> around;
   for (const EffectFinding& one : found.effects) {

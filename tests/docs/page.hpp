@@ -58,10 +58,16 @@ inline std::string anchor_of(std::string_view heading) {
   return anchor;
 }
 
+/// Between two backticks, as `F[K](X)` is.
+inline bool is_code(const std::string& line, std::size_t at) {
+  const auto here = line.begin() + static_cast<std::ptrdiff_t>(at);
+  return std::count(line.begin(), here, '`') % 2 != 0 && std::find(here, line.end(), '`') != line.end();
+}
+
 inline void collect_links(const std::string& line, std::size_t number, Page& page) {
   for (auto at = line.find("]("); at != std::string::npos; at = line.find("](", at + 2)) {
     const auto end = line.find(')', at);
-    if (end != std::string::npos) {
+    if (end != std::string::npos && !is_code(line, at)) {
       page.links.push_back({line.substr(at + 2, end - at - 2), number});
     }
   }

@@ -24,7 +24,7 @@ TEST_P(NewFolder, EachCommandOfItsReadmePrintsWhatItSays) {
     EXPECT_TRUE(bench.has(std::string("mine/") + file)) << file;
     EXPECT_THAT(made.out, HasSubstr(std::string("mine/") + file + "\n"));
   }
-  EXPECT_THAT(bench.read("mine/README.md"), AllOf(HasSubstr("# mine\n"), testing::Not(HasSubstr("@"))));
+  EXPECT_THAT(bench.read("mine/README.md"), AllOf(HasSubstr("# mine\n"), testing::Not(HasSubstr("@NAME@"))));
   const auto page = test::read_page(bench.path() / "mine" / "README.md");
   std::size_t commands = 0;
   std::string printed;

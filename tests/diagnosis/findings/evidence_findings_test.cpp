@@ -61,6 +61,16 @@ TEST(EvidenceFindings, TheSentenceHasSizesShareNextBestAndRest) {
             "(probability 0.98; next best play, 54 %). The rest, 20 %, no effect of the library explains.");
 }
 
+/// One idea a sentence: what is beside it has one of its own.
+TEST(EvidenceFindings, WhatIsBesideItHasASentence) {
+  Diagnosis found = told("N");
+  found.evidence.sets.front().closed = 0.9;
+  found.evidence.families.push_back({.family = "play", .probability = 0.9, .closed = 0.1, .alone = 0.2, .edge = "V"});
+  EXPECT_THAT(sentence_of(found, {}),
+              testing::HasSubstr("). With play at V (probability 0.90) it closes 90 %. The rest, "
+                                 "10 %, no effect of the library explains."));
+}
+
 /// Of a set that is not the one in `improved.st` no run is kept: what it would leave is not known, and is not 0.
 TEST(EvidenceFindings, WhatASetLeavesIsKnownOfTheOneThatIsKept) {
   Diagnosis found;

@@ -36,7 +36,7 @@ class Interpreted {
  public:
   explicit Interpreted(const std::string& diagram) : machine_(program(diagram)) {}
 
-  [[nodiscard]] long instances() const { return 1; }
+  [[nodiscard]] static long instances() { return 1; }
 
   void run(double* output, std::size_t samples) {
     machine_.reset();

@@ -48,7 +48,7 @@ void of_picma(benchmark::State& state) {
 void of_machine(benchmark::State& state) {
   const auto samples = static_cast<std::size_t>(state.range(0));
   MachineRecord numbers = machine_record(samples);
-  auto record = records::Record::even(0.0, machine_period, samples);
+  auto record = records::Record::even(0.0, machine_period, samples);  // NOLINT(readability-suspicious-call-argument)
   record.add({.name = "U", .values = std::move(numbers.u)});
   record.add({.name = "Y", .values = std::move(numbers.y)});
   const auto file = parameters::parse_parameter_file("machine.toml", machine_parameters);

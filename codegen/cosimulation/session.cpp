@@ -66,7 +66,7 @@ Session::Session(const Fmu& fmu, std::string instance, std::size_t most_lanes, d
     refuse_system(fmu.path(), "shared memory");
   }
   memory_ = mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_SHARED, memory_file_, 0);
-  if (memory_ == MAP_FAILED) {
+  if (memory_ == MAP_FAILED) {  // NOLINT(performance-no-int-to-ptr): the system's own
     memory_ = nullptr;
     refuse_system(fmu.path(), "shared memory");
   }

@@ -53,8 +53,9 @@ std::string identifier_of(std::string_view name) {
 std::string unit_of(const std::string& unit) {
   std::string translated;
   for (std::size_t i = 0; i < unit.size(); ++i) {
-    const bool digit = std::isdigit(static_cast<unsigned char>(unit[i])) != 0 ||
-                       (unit[i] == '-' && i + 1 < unit.size() && std::isdigit(static_cast<unsigned char>(unit[i + 1])));
+    const bool digit =
+        std::isdigit(static_cast<unsigned char>(unit[i])) != 0 ||
+        (unit[i] == '-' && i + 1 < unit.size() && std::isdigit(static_cast<unsigned char>(unit[i + 1])) != 0);
     const bool behind_letter = i > 0 && std::isalpha(static_cast<unsigned char>(unit[i - 1])) != 0;
     translated += digit && behind_letter ? "^" : "";
     translated += unit[i] == '.' ? '*' : unit[i];

@@ -59,7 +59,7 @@ constexpr std::array foreign_functions{Foreign{"POW", "EXPT(base, exponent), or 
 
 /// `Write EXPT(…). `; empty where the name tells nothing.
 std::string meant_function(std::string_view name) {
-  const auto known =
+  const auto* const known =
       std::ranges::find_if(foreign_functions, [&](const Foreign& one) { return equal_ignoring_case(one.name, name); });
   return known == foreign_functions.end() ? std::string() : fmt::format("Write {}. ", known->here);
 }

@@ -271,7 +271,7 @@ class Check {
   }
 
   /// The argument at a place of the standard's order, however it is given.
-  [[nodiscard]] ExpressionId value_of(const FunctionCall& call, std::string_view name, std::size_t place) const {
+  [[nodiscard]] static ExpressionId value_of(const FunctionCall& call, std::string_view name, std::size_t place) {
     for (const auto& argument : call.arguments) {
       if (language::same_name(argument.formal.text, formal_arguments(name)[place])) {
         return argument.value;

@@ -302,6 +302,7 @@ std::optional<Elements> VectorValues::each(const std::vector<Elements>& operands
                   .unknown = std::ranges::any_of(operands, [](const Elements& one) { return one.unknown; })};
   for (std::size_t i = 0; i < (vector != nullptr ? vector->elements.size() : 1); ++i) {
     std::vector<ExpressionId> one;
+    one.reserve(operands.size());
     for (const Elements& operand : operands) {
       one.push_back(operand.at(i));
     }

@@ -139,7 +139,7 @@ class ProjectReader {
       throw refusal(line_at(result.offset), fmt::format("the XML ends being XML here: {}", result.description()),
                     "Export the file again; it may have been cut.");
     }
-    const xml_node project = child(document, tc6::project);
+    const xml_node project = child(document.root(), tc6::project);
     const xml_node pous = child(child(project, tc6::types), tc6::pous);
     if (!pous) {
       throw refusal(1, fmt::format("there is no {}/{}/{} in it", tc6::project, tc6::types, tc6::pous),
@@ -340,7 +340,7 @@ class ProjectReader {
     return element;
   }
 
-  void read_pins(xml_node list, std::vector<DrawnPin>& pins) {
+  static void read_pins(xml_node list, std::vector<DrawnPin>& pins) {
     for_each(list, tc6::variable, [&](xml_node node) {
       DrawnPin pin{.name = without_blanks(node.attribute(tc6::formal_parameter).value()),
                    .negated = node.attribute(tc6::negated).as_bool()};

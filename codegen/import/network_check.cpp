@@ -61,7 +61,7 @@ std::vector<Objection> wrong_elements(const DrawnPou& pou, const Assigners& assi
     if (key.find('[') == std::string::npos || variable == nullptr) {
       continue;
     }
-    const auto object = [&](std::string why, std::string mend) {
+    const auto object = [&, &elements = elements](std::string why, std::string mend) {
       result.push_back({.element = elements.front(), .why = std::move(why), .mend = std::move(mend)});
     };
     if (!place) {

@@ -58,11 +58,8 @@ struct alignas(32) LaneBools {
 #ifdef __AVX__
     return __builtin_ia32_movmskpd256(detail::LaneNumbers(four));
 #else  // code that only passes lanes on
-    int result = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-      result |= (four[k] < 0 ? 1 : 0) << k;
-    }
-    return result;
+    const auto bit = [&four](int k) { return (four[k] < 0 ? 1 : 0) << k; };
+    return bit(0) | bit(1) | bit(2) | bit(3);
 #endif
   }
 };

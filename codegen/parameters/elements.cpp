@@ -63,10 +63,10 @@ class ByElement {
   void add_elements(const ParameterValue& given, const Fields& fields, std::vector<ParameterValue>& result) {
     std::vector<Value> values;
     if (const auto* const numbers = std::get_if<std::vector<double>>(&given.value)) {
-      for (std::size_t i = 0; i < numbers->size(); ++i) {
+      for (const double number : *numbers) {
         // A number is no BOOL, whichever it is: the message of a single value says so.
         const bool truth = fields.front()->type == Type::Bool;
-        values.push_back(truth ? Value((*numbers)[i]) : value_for(*fields.front(), (*numbers)[i]));
+        values.push_back(truth ? Value(number) : value_for(*fields.front(), number));
       }
     } else if (const auto* const truths = std::get_if<std::vector<bool>>(&given.value)) {
       values.assign(truths->begin(), truths->end());

@@ -144,6 +144,7 @@ Votes vote(const std::vector<Explored>& spaces, View& sets, std::uint64_t seed, 
   for (int draw = 0; draw < count; ++draw) {
     draws.draw();
     std::vector<double> bare;
+    bare.reserve(spaces.size());
     for (const Explored& one : spaces) {
       bare.push_back(one.regression->log_square(one.bare.score.held_out, draws.weights()));
     }

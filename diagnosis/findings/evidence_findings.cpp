@@ -149,6 +149,18 @@ double confidence_of(const Evidence& evidence, const SetFinding& set) {
   return std::min(evidence.families.front().probability * correlation, 0.99);
 }
 
+namespace {
+
+/// What closes most of the gap by itself beside what is named. It may be more, and not come again in other stretches.
+std::string next_words(const FamilyFinding& next, const FamilyFinding& named) {
+  const std::string words = words_of_family(next.family);
+  return next.alone > named.alone ? fmt::format("; {} closes more by itself, {}, and is less probable, {:.2f}", words,
+                                                percent(next.alone), next.probability)
+                                  : fmt::format("; next best {}, {}", words, percent(next.alone));
+}
+
+}  // namespace
+
 std::string sentence_of(const Diagnosis& found, const Rules& rules) {
   const Evidence& evidence = found.evidence;
   const SetFinding& first = first_set(evidence);
@@ -175,9 +187,7 @@ std::string sentence_of(const Diagnosis& found, const Rules& rules) {
                                     : fmt::format(" with {} sibling{}, {:.2f} by this record alone", found.siblings,
                                                   found.siblings == 1 ? "" : "s", family.by_record);
   text += fmt::format(" (probability {:.2f}{}{})", family.probability, by_record,
-                      next == nullptr
-                          ? std::string()
-                          : fmt::format("; next best {}, {}", words_of_family(next->family), percent(next->alone)));
+                      next == nullptr ? std::string() : next_words(*next, family));
   if (!beside.empty()) {
     text += fmt::format(". With {} it closes {}", fmt::join(beside, " and "), percent(first.closed));
   }

@@ -58,6 +58,7 @@ class CppHeader {
  private:
   static std::vector<std::string> members_of(const std::vector<Member>& names) {
     std::vector<std::string> members;
+    members.reserve(names.size());
     for (const Member& member : names) {
       members.push_back(std::string(member.group) + (member.group.empty() ? "" : ".") + std::string(member.name));
     }

@@ -410,18 +410,18 @@ Value Computer::rotated(const Value& value, const Value& places, bool left) {
   if (!constant(places, known)) {  // by as many as the lowest bits of the number say: a word is a ring
     const Value turns = ranged(apply(Op::IntAnd, {places.wire, whole(width - 1)}), Plain::Dint, 0, width - 1);
     const Value others = integer(Op::IntSubtract, literal(Plain::Dint, width), turns, Plain::Dint);
-    const Value high = shifted(value, left ? turns : others, true);
-    const Value low = shifted(value, left ? others : turns, false);
-    return fit(bits(Operator::Or, high, low, value.type), value.type);
+    const Value upper = shifted(value, left ? turns : others, true);
+    const Value lower = shifted(value, left ? others : turns, false);
+    return fit(bits(Operator::Or, upper, lower, value.type), value.type);
   }
   const int n = ((static_cast<int>(known) % width) + width) % width;
   const int up = left ? n : width - n;
   if (n == 0) {
     return value;
   }
-  const Value high = shifted(value, literal(Plain::Dint, up), true);
-  const Value low = shifted(value, literal(Plain::Dint, width - up), false);
-  return fit(bits(Operator::Or, high, low, value.type), value.type);
+  const Value upper = shifted(value, literal(Plain::Dint, up), true);
+  const Value lower = shifted(value, literal(Plain::Dint, width - up), false);
+  return fit(bits(Operator::Or, upper, lower, value.type), value.type);
 }
 
 }  // namespace hysteron::bodies

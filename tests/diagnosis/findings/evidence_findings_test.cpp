@@ -61,6 +61,13 @@ TEST(EvidenceFindings, TheSentenceHasSizesShareNextBestAndRest) {
             "(probability 0.98; next best play, 54 %). The rest, 20 %, no effect of the library explains.");
 }
 
+TEST(EvidenceFindings, WhatClosesMoreAndIsLessProbableIsNoNextBest) {
+  Diagnosis found = told("N");
+  found.evidence.families[1].alone = 0.9;
+  EXPECT_THAT(sentence_of(found, {}), testing::HasSubstr("(probability 0.98; play closes more by itself, 90 %, and is "
+                                                         "less probable, 0.10)."));
+}
+
 /// One idea a sentence: what is beside it has one of its own.
 TEST(EvidenceFindings, WhatIsBesideItHasASentence) {
   Diagnosis found = told("N");

@@ -74,7 +74,7 @@ TEST(Retain, InputsComeBackAndOlderFilesHaveNone) {
   EXPECT_EQ(slot.values.inputs, values.inputs);
   EXPECT_EQ(slot.values.state, values.state);
   auto older = encode_slot(some_values(7));
-  older.resize(older.size() - 2 * sizeof(std::uint32_t));  // the count of inputs, and the sum
+  older.erase(older.end() - 2 * sizeof(std::uint32_t), older.end());  // the count of inputs, and the sum
   const std::uint32_t sum = crc32c(older);
   const auto* const bytes = reinterpret_cast<const std::byte*>(&sum);
   older.insert(older.end(), bytes, bytes + sizeof(sum));

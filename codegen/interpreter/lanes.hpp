@@ -58,8 +58,13 @@ struct alignas(32) LaneBools {
 #ifdef __AVX__
     return __builtin_ia32_movmskpd256(detail::LaneNumbers(four));
 #else  // code that only passes lanes on
-    const auto bit = [&four](int k) { return (four[k] < 0 ? 1 : 0) << k; };
-    return bit(0) | bit(1) | bit(2) | bit(3);
+    std::array<std::int64_t, 4> all{};
+    __builtin_memcpy(all.data(), &four, sizeof(all));
+    int result = 0;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      result |= (all[k] < 0 ? 1 : 0) << k;
+    }
+    return result;
 #endif
   }
 };

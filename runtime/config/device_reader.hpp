@@ -15,8 +15,10 @@ namespace hysteron::runtime {
 
 class DeviceReader {
  public:
+  /// The name of the file is not copied.
   DeviceReader(const std::string& file, const ProgramShape& shape, RunConfig& config, Diagnostics& found)
       : file_(&file), shape_(&shape), config_(&config), found_(&found) {}
+  DeviceReader(const std::string&& file, const ProgramShape&, RunConfig&, Diagnostics&) = delete;
 
   /// A table [devices.NAME]; all of them before inputs and outputs.
   void read_device(const std::string& name, TomlReader table);

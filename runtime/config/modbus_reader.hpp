@@ -10,8 +10,10 @@ namespace hysteron::runtime {
 
 class ModbusReader {
  public:
+  /// The name of the file is not copied.
   ModbusReader(const std::string& file, RunConfig& config, Diagnostics& found)
       : file_(&file), config_(&config), found_(&found) {}
+  ModbusReader(const std::string&& file, RunConfig&, Diagnostics&) = delete;
 
   /// The table [modbus]; null where there is none.
   void read(const toml::table* modbus, bool over_tls);

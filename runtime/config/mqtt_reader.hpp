@@ -14,8 +14,10 @@ namespace hysteron::runtime {
 
 class MqttReader {
  public:
+  /// The name of the file is not copied.
   MqttReader(const std::string& file, const ProgramShape& shape, RunConfig& config, Diagnostics& found)
       : file_(&file), shape_(&shape), config_(&config), found_(&found) {}
+  MqttReader(const std::string&& file, const ProgramShape&, RunConfig&, Diagnostics&) = delete;
 
   /// Null where the file has none.
   void read(const toml::table* mqtt, const toml::table* dead_bands);

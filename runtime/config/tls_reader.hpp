@@ -12,8 +12,10 @@ namespace hysteron::runtime {
 
 class TlsReader {
  public:
+  /// The name of the file is not copied.
   TlsReader(const std::string& file, RunConfig& config, Diagnostics& found)
       : file_(&file), config_(&config), found_(&found) {}
+  TlsReader(const std::string&& file, RunConfig&, Diagnostics&) = delete;
 
   /// The tables [tls] and [roles], after [modbus]; null where the file has none.
   void read(const toml::table* tls, const toml::table* roles);

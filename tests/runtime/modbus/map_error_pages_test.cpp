@@ -32,7 +32,8 @@ MapRequest request_of(const test::FencedBlock& block) {
   const auto file = toml::parse(block.text);
   RunConfig config;
   Diagnostics found;
-  ModbusReader reader("run.toml", config, found);
+  const std::string name = "run.toml";
+  ModbusReader reader(name, config, found);
   const auto* const server = file["modbus"].as_table();
   const toml::table empty;
   reader.read(server == nullptr ? &empty : server, false);

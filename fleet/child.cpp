@@ -44,6 +44,7 @@ Child::Child(const std::vector<std::string>& command, const std::filesystem::pat
              const std::filesystem::path& errors, std::uint64_t megabytes) {
   auto words = command;
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) {
     arguments.push_back(word.data());
   }
@@ -52,7 +53,7 @@ Child::Child(const std::vector<std::string>& command, const std::filesystem::pat
   const int results = open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   const int complaints = open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   const pid_t parent = getpid();
-  pid_ = fork();
+  pid_ = fork();  // NOLINT(cppcoreguidelines-prefer-member-initializer): once its files are open
   if (pid_ == 0) {
     become(arguments.data(), nowhere, results, complaints, parent, static_cast<rlim_t>(megabytes) << 20U);
   }

@@ -87,6 +87,7 @@ std::optional<std::vector<std::string>> cells_of(std::string_view line) {
 
 std::vector<std::string> names_of_columns() {
   std::vector<std::string> names;
+  names.reserve(std::size(columns));
   for (const Column& one : columns) {
     names.emplace_back(one.name);
   }

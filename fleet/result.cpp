@@ -99,7 +99,7 @@ void write_result(const std::filesystem::path& folder, const Unit& unit, std::st
 Result read_result(const std::filesystem::path& folder) {
   try {
     const auto json = nlohmann::json::parse(read_text_file((folder / "result.json").string()));
-    const auto status = std::ranges::find(names, json.at("status").get<std::string>());
+    const auto* const status = std::ranges::find(names, json.at("status").get<std::string>());
     if (json.at("schema").get<std::string>() == schema && status != names.end()) {
       return {.status = static_cast<Status>(status - names.begin()),
               .exit_code = json.at("exit_code").get<int>(),

@@ -56,7 +56,7 @@ std::optional<Share> process(const Variable& variable) {
     return open_mpi ? open_mpi : other;  // mpirun within a step of Slurm: the numbers of srun are those of its daemons
   }
   // A batch script is process 0 of the tasks that it may start; whatever it calls without srun, it calls once.
-  const auto step = variable("SLURM_STEP_ID");
+  const auto* const step = variable("SLURM_STEP_ID");
   const auto rank = number_in(variable, "SLURM_PROCID");
   const bool is_started = (step != nullptr && *step != '\0') || rank.value_or(0) > 0;
   if (!is_started) {

@@ -59,7 +59,7 @@ class Writer {
         .bind(3, run.version)
         .bind(4, fmt::format("{}", fmt::join(run.options, " ")))
         .bind(5, run.last)
-        .bind(6, std::int64_t{is_current})
+        .bind(6, std::int64_t{is_current ? 1 : 0})
         .run();
   }
 
@@ -96,7 +96,7 @@ class Writer {
           .bind(4, one.edge)
           .bind(5, one.probability)
           .bind(6, one.share)
-          .bind(7, std::int64_t{one.named})
+          .bind(7, std::int64_t{one.named ? 1 : 0})
           .run();
     }
     for (const FoundParameter& one : row.outcome.parameters) {

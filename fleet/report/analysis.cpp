@@ -97,6 +97,7 @@ void ask_parameter(Analysis& all, Parameter& parameter) {
   parameter.median = median(levels);
   if (levels.size() >= least_siblings) {
     std::vector<double> distances;
+    distances.reserve(levels.size());
     for (const double level : levels) {
       distances.push_back(std::abs(level - parameter.median));
     }
@@ -174,8 +175,8 @@ void collect_effects(Analysis& all, const std::vector<Row>& rows) {
                      .records = own.size(),
                      .since = onset_of(over_time),
                      .has_siblings = machines.size() >= least_siblings};
-        const double others = static_cast<double>(records - own.size());
-        const double others_named = static_cast<double>(total - in.size());
+        const auto others = static_cast<double>(records - own.size());
+        const auto others_named = static_cast<double>(total - in.size());
         one.sibling_share = others > 0.0 ? others_named / others : 0.0;
         // Jeffreys: a share of no records is not known to be none.
         one.p = one.has_siblings ? binomial_tail(in.size(), own.size(), (others_named + 0.5) / (others + 1.0)) : 1.0;

@@ -44,8 +44,8 @@ constexpr double least_p = 1e-9;
 
 class FleetPage {
  public:
-  FleetPage(const Analysis& all, const std::vector<Row>& rows, const fs::path& folder)
-      : all_(all), rows_(rows), folder_(folder) {
+  FleetPage(const Analysis& all, const std::vector<Row>& rows, fs::path folder)
+      : all_(all), rows_(rows), folder_(std::move(folder)) {
     for (const Finding& finding : all.findings) {
       if (found_.empty() || found_.back().front()->machine != finding.machine) {
         found_.emplace_back();

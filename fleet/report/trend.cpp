@@ -84,7 +84,7 @@ std::vector<double> residuals_of(const Series& series, const std::vector<double>
 /// Standard deviation about the form; three numbers are taken from the points: a, b and the place.
 double own_scatter(const Series& series, const Form& form) {
   const auto residuals = residuals_of(series, shape_of(series, form.change, form.place), form.line);
-  const double n = static_cast<double>(residuals.size());
+  const auto n = static_cast<double>(residuals.size());
   double sum = 0.0;
   for (const double r : residuals) {
     sum += r * r;
@@ -141,7 +141,7 @@ Scatter scatter_of(const std::vector<Series>& machines) {
     }
     machines_counted += 1.0;
   }
-  const double n = static_cast<double>(distances.size());
+  const auto n = static_cast<double>(distances.size());
   const double freedom = n - 2.0 * machines_counted;
   if (freedom <= 0.0) {
     return {};

@@ -43,8 +43,8 @@ class Server {
   /// The words that mend what stands in a range, each as an edit.
   [[nodiscard]] nlohmann::json actions(const nlohmann::json& params) const;
   [[nodiscard]] nlohmann::json outline(const Document& open) const;
-  void change(Document& document, const nlohmann::json& change) const;
-  nlohmann::json published(const std::string& uri, Document& document) const;
+  void change(Document& open, const nlohmann::json& change) const;
+  nlohmann::json published(const std::string& uri, Document& open) const;
   [[nodiscard]] const Document& document(const nlohmann::json& params) const;
   [[nodiscard]] nlohmann::json range(std::string_view text, std::size_t begin, std::size_t end) const;
   [[nodiscard]] std::pair<std::size_t, std::size_t> offsets(std::string_view text, const nlohmann::json& range) const;

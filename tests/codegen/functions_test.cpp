@@ -75,8 +75,8 @@ TEST(Functions, ABitOfAWordIsRead) {
   std::mt19937 engine(1);
   unsigned last = 0;
   for (int k = 0; k < 300; ++k) {
-    const unsigned word = k < 16 ? 1U << static_cast<unsigned>(k) : engine() % 65536;
-    const unsigned other = engine() % 65536;
+    const auto word = static_cast<unsigned>(k < 16 ? 1UL << static_cast<unsigned>(k) : engine() % 65536);
+    const auto other = static_cast<unsigned>(engine() % 65536);
     machine.set_input(0, word);
     machine.set_input(2, other);
     machine.step();

@@ -43,8 +43,9 @@ struct HostRun {
   std::string err{};  ///< or the error that it was refused with
 };
 
-HostRun host_run(const std::string& rest, double a = 1.0) {
+HostRun host_run(const std::string& rest, double a = 1.0, const std::string& unit = "") {
   test::Accumulator program;
+  program.mutable_shape().parameters[0].unit = unit;
   program.set_parameter(0, a);
   HostRun outcome;
   testing::internal::CaptureStderr();
@@ -141,6 +142,22 @@ TEST_F(KeptFiles, ASlotThatCannotBeReadIsNotTakenForMissing) {
     std::filesystem::rename(elsewhere / "slot", folder / slot);
   }
   EXPECT_TRUE(host_run(retain()).well);
+}
+
+/// An edit of units alone leaves the layout: 250 V/mm must not become 250 V/um.
+TEST_F(KeptFiles, AParameterOfAnotherUnitIsNotTakenOver) {
+  EXPECT_TRUE(host_run(retain(), 250.0, "V/mm").well);
+  EXPECT_THAT(host_run(retain("mismatch = \"refuse\"\n"), 0.25, "V/um").out,
+              StartsWith("HY811:5: The retained values are of other units: G.A is in V/mm there, V/um here."));
+  EXPECT_THAT(host_run(retain("mismatch = \"refuse\"\n"), 2.0, "V/mm").out,
+              HasSubstr("with 1 parameter as retained and not as given: G.A"));
+  const HostRun carried = host_run(retain(), 0.25, "V/um");
+  EXPECT_TRUE(carried.well);
+  EXPECT_THAT(carried.err, HasSubstr("G.A (V/mm there, V/um here)"));
+  EXPECT_THAT(carried.out, Not(HasSubstr("as retained and not as given")));
+  const HostRun cold = host_run(retain("mismatch = \"cold\"\n"), 2.0, "V/mm");
+  EXPECT_TRUE(cold.well);
+  EXPECT_THAT(cold.out, AllOf(HasSubstr("started cold"), Not(HasSubstr("as retained"))));
 }
 
 TEST_F(KeptFiles, ParametersThatAreRetainedAndNotAsGivenAreSaid) {

@@ -193,6 +193,20 @@ TEST_F(KeptFiles, ALockFileThatCannotBeOneIsRefusedAtItsTable) {
   }
 }
 
+/// A file that a power cut emptied has kept no address: who knows them from before has to hear of it.
+TEST_F(KeptFiles, ALockFileWithoutAnAddressIsSaid) {
+  const std::string table = fmt::format("[modbus]\nport = 0\nlock_file = \"{}\"\n", folder / "plant.registers");
+  EXPECT_THAT(host_run(table).err, Not(HasSubstr("had no address"))) << "a first start";
+  const std::string whole = contents_of(folder / "plant.registers");
+  EXPECT_THAT(host_run(table).err, Not(HasSubstr("had no address")));
+  for (const char* const rest : {"", "# Addresses of ACC", "\r\n\n"}) {
+    folder.write("plant.registers", rest);
+    EXPECT_THAT(host_run(table).err,
+                HasSubstr("plant.registers was there and had no address: registers have them anew"));
+    EXPECT_EQ(contents_of(folder / "plant.registers"), whole);
+  }
+}
+
 TEST_F(KeptFiles, ALockFileThatHasNoRoomKeepsNoTaskFromStartingAndIsWrittenOnceThereIs) {
   test::Accumulator program;
   RunConfig config = parse_run_config(

@@ -41,7 +41,7 @@ and how far each output would jump; without it the task changes to what stands i
 refuses with the reason. --back brings the version before back, and its files; what stood there is kept beside as
 FILE.undone. The run file names the socket of the task: socket under [online_change]. What else it says counts from the
 next start on; a run file with which the new version could not be started is refused.
-Exit codes: 0 changed, or nothing stands against it; 2 refused: the running version goes on.
+Exit codes: 0 changed, nothing to change, or nothing stands against it; 2 refused: the running version goes on.
 )";
 
 struct OnlineChangeOptions {
@@ -123,6 +123,19 @@ Json register_texts(const Json& registers) {
   return texts;
 }
 
+std::string edited_run_file_text(const Json& report) {
+  return report.at("run_file_edited").get<bool>()
+             ? "the run file was edited since the start of the task: what it says now counts from the next start on\n"
+             : "";
+}
+
+/// The files are those of the version that runs.
+std::string nothing_text(const Json& report) {
+  return fmt::format("{}: nothing changed; version {} runs on, and --back goes where it went before\n",
+                     report.at("program").get<std::string>(), report.at("version").get<std::uint64_t>()) +
+         edited_run_file_text(report);
+}
+
 std::string change_text(const Json& report, bool is_back) {
   std::string text = fmt::format(
       "{}: {}\n{} of {} parameters and {} of {} states {} carried over\n", report.at("program").get<std::string>(),
@@ -153,10 +166,7 @@ std::string change_text(const Json& report, bool is_back) {
   if (!report.at("retained").get<bool>()) {
     text += "its values are not on the disk yet: see task.write_failures\n";
   }
-  if (report.at("run_file_edited").get<bool>()) {
-    text += "the run file was edited since the start of the task: what it says now counts from the next start on\n";
-  }
-  return text;
+  return text + edited_run_file_text(report);
 }
 
 /// Nothing where there is no file.
@@ -254,7 +264,10 @@ int online_change(const OnlineChangeOptions& options, Console& console) {
   const Json answer = ask(socket, options, options.back ? "check-back" : options.check ? "check" : "change");
   console.report(diagnostics_of(answer.at("warnings")));
   const Json& report = answer.at("report");
-  console.print(options.json ? report.dump(2) + "\n" : change_text(report, options.back));
+  const bool is_nothing = !options.check && !report.at("changed").get<bool>();
+  console.print(options.json ? report.dump(2) + "\n"
+                : is_nothing ? nothing_text(report)
+                             : change_text(report, options.back));
   return exit_ok;
 }
 

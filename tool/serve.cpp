@@ -97,8 +97,7 @@ int serve(const ServeOptions& options, Console& console) {
   }
   runtime::StepProgram& running = changeable ? *changeable : *program;
   ServedVersions versions(options.diagram, engine, web.has_value(),
-                          {.run_file = options.config, .text = run_text, .inputs = std::move(inputs)},
-                          std::move(version.files));
+                          {.run_file = options.config, .text = run_text, .inputs = std::move(inputs)}, version);
   const auto take_changes = [&, where = config.online_change](runtime::OnlineChange& change,
                                                               std::string& said) -> std::shared_ptr<void> {
     said += fmt::format("; online change on {}", where->socket);

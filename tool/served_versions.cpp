@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "codegen/program_hash.hpp"
 #include "runtime/config/run_config.hpp"
 #include "runtime/host/host.hpp"
 #include "runtime/host/notices.hpp"
@@ -36,6 +37,14 @@ std::vector<OutputFile> files_of(const DiagramOptions& options) {
     }
   }
   return files;
+}
+
+bool are_all_read_again(const DiagramOptions& options) {
+  const auto inputs = inputs_of(options);
+  return std::ranges::all_of(inputs, [](const InputFile& one) {
+    std::error_code unknown;
+    return one.file.empty() || std::filesystem::is_regular_file(one.file, unknown);
+  });
 }
 
 bool are_same_files(const std::vector<OutputFile>& a, const std::vector<OutputFile>& b) {
@@ -101,18 +110,27 @@ ServedVersions::NextVersion ServedVersions::next_version(const runtime::OnlineCh
     auto program = step_program(loaded.diagram, Engine::interpreter, options_.float32, inner, picture);
     change.require_sound(program->shape(), wish);
     require_next_start(*program);
+    if (is_asked_for_nothing(loaded, wish)) {
+      return {};
+    }
     if (engine_ == Engine::compiled) {
       progress("compiles the new version");
       program = step_program(loaded.diagram, engine_, options_.float32, inner, picture);
     }
     progress("steps the new version beside the running one");
-    return {.program = std::move(program), .files = std::move(loaded.files)};
+    return {.program = std::move(program), .files = std::move(loaded.files), .hash = program_hash(loaded.diagram)};
   } catch (const InputError& refused) {
     if (!wish.only_check) {
       change.tell_refused(refused);
     }
     throw;
   }
+}
+
+/// A version that is the running one would take the place of the one before, which is the way back.
+bool ServedVersions::is_asked_for_nothing(const LoadedVersion& loaded, const runtime::ChangeWish& wish) const {
+  return !wish.only_check && wish.as_given.empty() && are_same_files(loaded.files, running_) &&
+         program_hash(loaded.diagram) == running_hash_ && are_all_read_again(options_);
 }
 
 void ServedVersions::require_next_start(const runtime::StepProgram& program) const {
@@ -147,12 +165,16 @@ std::string ServedVersions::answer(runtime::OnlineChange& change, const std::str
       answer["report"] = as_json(change.change_back(wish));
       if (!wish.only_check) {
         std::swap(running_, former_);
+        std::swap(running_hash_, former_hash_);
       }
     } else {
       NextVersion next = next_version(change, wish, warnings, progress);
-      answer["report"] = as_json(change.change_to(std::move(next.program), wish));
-      if (!wish.only_check) {
+      const bool is_same = next.program == nullptr;
+      answer["report"] =
+          as_json(is_same ? change.nothing_to_change() : change.change_to(std::move(next.program), wish));
+      if (!wish.only_check && !is_same) {
         former_ = std::exchange(running_, std::move(next.files));
+        former_hash_ = std::exchange(running_hash_, std::move(next.hash));
       }
     }
     if (answer.contains("report")) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "codegen/compile.hpp"
+#include "codegen/program_hash.hpp"
 #include "runtime/host/online_change.hpp"
 #include "runtime/task/changeable_program.hpp"
 #include "support/atomic_file.hpp"
@@ -44,13 +45,13 @@ class ServedVersions {
   using Progress = std::function<void(std::string_view)>;
 
   /// `shows_inner`: programs are made with their inner signals and their picture, for the live page.
-  ServedVersions(DiagramOptions options, Engine engine, bool shows_inner, StartFiles start,
-                 std::vector<OutputFile> first)
+  ServedVersions(DiagramOptions options, Engine engine, bool shows_inner, StartFiles start, const LoadedVersion& first)
       : options_(std::move(options)),
         engine_(engine),
         shows_inner_(shows_inner),
         start_(std::move(start)),
-        running_(std::move(first)) {}
+        running_(first.files),
+        running_hash_(program_hash(first.diagram)) {}
 
   /// A request as `hysteron online-change` makes it, one line of JSON: `what` is check, change, check-back, back or
   /// files; `bumps`, `as_given` and `load` as ChangeWish has them. The answer: `report` or `files`, and `warnings`; or
@@ -61,9 +62,12 @@ class ServedVersions {
   struct NextVersion {
     std::unique_ptr<runtime::StepProgram> program{};
     std::vector<OutputFile> files{};
+    std::string hash{};
   };
+  /// Without a program where the files are those of the version that runs, and nothing else is wished.
   [[nodiscard]] NextVersion next_version(const runtime::OnlineChange& change, const runtime::ChangeWish& wish,
                                          Diagnostics& warnings, const Progress& progress) const;
+  [[nodiscard]] bool is_asked_for_nothing(const LoadedVersion& loaded, const runtime::ChangeWish& wish) const;
   /// Throws InputError where a start with the run file as it stands now, and with this version, would be refused.
   void require_next_start(const runtime::StepProgram& program) const;
   [[nodiscard]] bool is_run_file_edited() const;
@@ -74,6 +78,8 @@ class ServedVersions {
   StartFiles start_;
   std::vector<OutputFile> running_;   ///< files of the version that runs
   std::vector<OutputFile> former_{};  ///< of the one before; empty where there is none
+  std::string running_hash_;          ///< of the diagram, in which an FMU counts that the files only name
+  std::string former_hash_{};
 };
 
 }  // namespace hysteron::tool

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -34,11 +33,6 @@ std::uint64_t size_of(const std::filesystem::path& path) {
   std::error_code unknown;
   const auto size = std::filesystem::file_size(path, unknown);
   return unknown ? 0 : size;
-}
-
-std::uint64_t inode_of(const std::filesystem::path& path) {
-  struct stat status {};
-  return ::stat(path.c_str(), &status) == 0 ? status.st_ino : 0;
 }
 
 std::int64_t number_of(Database& database, const char* question) {
@@ -79,7 +73,7 @@ HistoryFile::HistoryFile(const HistoryPlan& plan, bool anew) : path_(plan.file),
     make_history_tables(*database_);
   }
   begin_run(plan);
-  inode_ = inode_of(path_);
+  inode_ = database::inode_of(path_);
 }
 
 void HistoryFile::begin_run(const HistoryPlan& plan) {
@@ -155,7 +149,7 @@ std::string HistoryFile::column_of(const Point& point) {
 }
 
 bool HistoryFile::is_there() const {
-  return inode_ != 0 && inode_of(path_) == inode_;
+  return inode_ != 0 && database::inode_of(path_) == inode_;
 }
 
 std::uint64_t HistoryFile::size() const {

@@ -410,6 +410,16 @@ ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const
   }
 }
 
+ChangeReport OnlineChange::nothing_to_change() const {
+  const ProgramShape& shape = program_->version().program().shape();
+  return {.program = shape.name,
+          .version = program_->version_number(),
+          .parameters = shape.parameters.size(),
+          .parameters_carried = shape.parameters.size(),
+          .states = shape.state.size(),
+          .states_carried = shape.state.size()};
+}
+
 ChangeReport OnlineChange::change_back(const ChangeWish& asked) {
   try {
     const auto lock = one_at_a_time();

@@ -50,6 +50,10 @@ RetainedState::RetainedState(const RetainConfig& config, StepProgram& program, s
                return values.state.size() == after_reset_.size()
                           ? not_finite(program.shape(), values.state, after_reset_)
                           : std::string();
+             },
+         .other_unit =
+             [&](const RetainedValues& values) {
+               return other_unit(read_description(values.described, values.state.size()), program.shape(), inputs_);
              }});
   } catch (const std::system_error& problem) {
     if (problem.code() == std::errc::resource_unavailable_try_again) {

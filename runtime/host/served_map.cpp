@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -37,8 +38,20 @@ auto placed(const Place& place, const Work& work) {
 /// A register map, and what its lock file has to say from now on.
 struct PlannedMap {
   modbus::RegisterMap map{};
-  std::string lock_text{};  ///< empty where the file stays as it is
+  std::string lock_text{};   ///< empty where the file stays as it is
+  bool was_emptied = false;  ///< the file was there, and without an address
 };
+
+/// As of a file that something cut off: none is written without an address.
+bool has_no_address(const std::string& lock_text) {
+  std::istringstream lines(lock_text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find_first_not_of(" \t\r") != std::string::npos && !line.starts_with('#')) {
+      return false;
+    }
+  }
+  return true;
+}
 
 modbus::RegisterMap map_with(const ModbusConfig& config, const std::string& title, std::span<const Point> points,
                              std::string lock_text) {
@@ -60,12 +73,15 @@ PlannedMap planned_map(const ModbusConfig& config, const std::string& title, std
   std::error_code unknown;
   const bool has_lock =
       !config.lock_file.empty() && (std::filesystem::exists(config.lock_file, unknown) || unknown != std::error_code{});
-  const std::string before =
-      has_lock ? placed(config.place, [&] { return read_text_file(config.lock_file); }) : config.first_addresses;
-  PlannedMap planned{.map = map_with(config, title, points, before)};
+  std::string before = has_lock ? placed(config.place, [&] { return read_text_file(config.lock_file); }) : "";
+  const bool was_emptied = has_lock && has_no_address(before);
+  if (!has_lock || was_emptied) {
+    before = config.first_addresses;
+  }
+  PlannedMap planned{.map = map_with(config, title, points, before), .was_emptied = was_emptied};
   if (!config.lock_file.empty()) {
     const auto text = modbus::lock_text(planned.map);
-    planned.lock_text = has_lock && text == before ? "" : text;
+    planned.lock_text = has_lock && !was_emptied && text == before ? "" : text;
   }
   return planned;
 }
@@ -89,6 +105,15 @@ void write_lock_file(const ModbusConfig& config, const std::string& text) {
 void tell_warnings(std::span<const Diagnostic> warnings) {
   for (const Diagnostic& one : warnings) {
     tell("Modbus", fmt::format("HY{} {}:{}: {} {}", one.number, one.place.file, one.place.line, one.cause, one.mend));
+  }
+}
+
+void tell_emptied(const PlannedMap& planned, const ModbusConfig& config) {
+  if (planned.was_emptied) {
+    tell("Modbus",
+         fmt::format("{} was there and had no address: registers have them {}, and may not be where clients "
+                     "know them. Put the file back from a copy, or hand out what `hysteron map` prints.",
+                     config.lock_file, config.first_addresses.empty() ? "anew" : "as the program was generated with"));
   }
 }
 
@@ -134,6 +159,7 @@ ServedMap::ServedMap(const RunConfig& config, std::string title, Task& task,
     // It keeps no task from starting; without another edit, the next start has the same addresses.
     tell("Modbus", problem + " It is tried again every 10 s: edit nothing before.");
   }
+  tell_emptied(planned, modbus);
   tell_warnings(planned.map.warnings().all());
 }
 
@@ -238,7 +264,9 @@ void check_register_map(const RunConfig& config, const StepProgram& program) {
 
 modbus::RegisterMap register_map_of(const RunConfig& config, const StepProgram& program) {
   PlannedMap planned = planned_map(config, program);
-  write_lock_file(config.modbus.value_or(ModbusConfig{}), planned.lock_text);
+  const ModbusConfig modbus = config.modbus.value_or(ModbusConfig{});
+  write_lock_file(modbus, planned.lock_text);
+  tell_emptied(planned, modbus);
   return std::move(planned.map);
 }
 

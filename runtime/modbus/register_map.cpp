@@ -14,6 +14,7 @@
 #include "runtime/modbus/map_text.hpp"
 #include "runtime/modbus/value_bits.hpp"
 #include "support/errors.hpp"
+#include "support/name_index.hpp"
 #include "support/sha256.hpp"
 
 namespace hysteron::runtime::modbus {
@@ -139,8 +140,13 @@ class Placer {
   void place_locked() {
     const std::uint32_t holding_end = size_of(Area::holding_register);
     const auto by_hand = placed_;
-    for (const LockLine& line : read_lock(request_.lock_file, request_.lock_text, holding_end, diagnostics_)) {
-      const auto point = index_.find(line.name);
+    const auto lines = read_lock(request_.lock_file, request_.lock_text, holding_end, diagnostics_);
+    const NameIndex alike = names_without_line(lines);
+    for (const LockLine& line : lines) {
+      auto point = index_.find(line.name);
+      if (const std::uint32_t* const renamed = alike.find(line.name); point == index_.end() && renamed != nullptr) {
+        point = index_.find(points_[*renamed].name);
+      }
       if (point != index_.end() && is_flawed_[point->second]) {
         continue;
       }
@@ -195,6 +201,23 @@ class Placer {
   [[nodiscard]] bool fits(std::size_t point, const Stretch& at) const {
     return at.is_boolean() == (formats_[point].type == PointType::boolean) &&
            (!points_[point].writable || at.area == Area::coil || at.area == Area::holding_register);
+  }
+
+  /// Points that no line names as they are written now: a line that differs in case alone may be theirs.
+  [[nodiscard]] NameIndex names_without_line(const std::vector<LockLine>& lines) const {
+    std::vector<bool> is_named(points_.size(), false);
+    for (const LockLine& line : lines) {
+      if (const auto point = index_.find(line.name); point != index_.end()) {
+        is_named[point->second] = true;
+      }
+    }
+    NameIndex names;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (!is_named[i]) {
+        names.add(points_[i].name, static_cast<std::uint32_t>(i));
+      }
+    }
+    return names;
   }
 
   /// False where the format does not serve.

@@ -92,7 +92,21 @@ void MqttSender::open_file() {
   }
 }
 
+/// Deleted or moved by somebody: all that waits is in memory still, and goes to another one.
+void MqttSender::leave_file_that_is_gone() {
+  if (file_ != nullptr && !file_->is_there()) {
+    remarks_.say(fmt::format("{} is gone; another one is begun. Had the task died meanwhile, {} rows would be lost.",
+                             settings_.file.string(), outbox_.size()));
+    file_.reset();
+    keep_at_ = time_.steady();
+  }
+}
+
 void MqttSender::keep(std::int64_t before) {
+  leave_file_that_is_gone();
+  if (file_ == nullptr) {
+    return;
+  }
   try {
     file_->follow(outbox_.first(), outbox_.rows_from(std::max(file_->end(), outbox_.first()), before));
     keep_at_ = time_.steady() + keep_pace;
@@ -329,6 +343,10 @@ void MqttSender::finish(milliseconds longest) {
   }
   client_.reset();
   counter_->set_connected(false);
+  leave_file_that_is_gone();
+  if (file_ == nullptr && !settings_.file.empty()) {
+    open_file();
+  }
   if (file_ != nullptr) {
     outbox_.call_back();
     keep(time_.steady());

@@ -55,6 +55,7 @@ class MqttSender {
  private:
   void take();
   void open_file();
+  void leave_file_that_is_gone();
   /// `before`: rows that were added until then.
   void keep(std::int64_t before);
   void file_failed(const std::string& problem, const char* mend = "Clear what is in the way there");

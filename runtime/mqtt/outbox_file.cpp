@@ -118,7 +118,8 @@ Database opened(const std::filesystem::path& path) {
 }  // namespace
 
 OutboxFile::OutboxFile(const std::filesystem::path& file, const std::vector<std::string>& points,
-                       const std::string& owner) {
+                       const std::string& owner)
+    : path_(file) {
   std::error_code unknown;  // the next call says what is wrong
   std::filesystem::create_directories(file.parent_path(), unknown);
   try {
@@ -140,6 +141,11 @@ OutboxFile::OutboxFile(const std::filesystem::path& file, const std::vector<std:
     open(file);
     read(file, points, owner);
   }
+  inode_ = database::inode_of(path_);
+}
+
+bool OutboxFile::is_there() const {
+  return inode_ != 0 && database::inode_of(path_) == inode_;
 }
 
 void OutboxFile::open(const std::filesystem::path& file) {

@@ -34,6 +34,8 @@ class OutboxFile {
   /// none left is none.
   [[nodiscard]] const std::vector<MqttRow>& rows() const { return rows_; }
   void forget_rows() { rows_ = {}; }
+  /// Whether the file still has its name: one that was deleted or moved takes rows that nobody finds.
+  [[nodiscard]] bool is_there() const;
   /// The number of the first of them, and of what is added next where there are none.
   [[nodiscard]] std::uint64_t first() const { return first_; }
   [[nodiscard]] std::uint64_t end() const { return end_; }
@@ -48,6 +50,8 @@ class OutboxFile {
   void write_anew(const std::vector<std::string>& points, const std::string& owner);
   void insert(std::uint64_t number, const MqttRow& row);
 
+  std::filesystem::path path_;
+  std::uint64_t inode_ = 0;
   std::string aside_;
   std::vector<MqttRow> rows_{};
   std::uint64_t first_ = 0;

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <map>
 #include <optional>
 #include <utility>
 
 #include "runtime/task/staged_parameters.hpp"
+#include "support/name_index.hpp"
 #include "support/whole_number.hpp"
 
 namespace hysteron::runtime {
@@ -177,11 +177,12 @@ std::string left(std::string_view name, std::string_view reason) {
   return fmt::format("{} ({})", name, reason);
 }
 
+/// Names count without regard to case, as in a diagram.
 template <class Named>
-std::map<std::string_view, std::size_t> by_name(const std::vector<Named>& named) {
-  std::map<std::string_view, std::size_t> places;
+NameIndex by_name(const std::vector<Named>& named) {
+  NameIndex places;
   for (std::size_t i = 0; i < named.size(); ++i) {
-    places.emplace(named[i].name, i);
+    places.add(named[i].name, static_cast<std::uint32_t>(i));
   }
   return places;
 }
@@ -253,24 +254,53 @@ KeptLayout read_description(std::string_view text, std::size_t state_size) {
   return layout;
 }
 
+std::string other_unit(const KeptLayout& kept, const ProgramShape& shape, std::span<const std::size_t> inputs) {
+  const auto of_named = [](const auto& all, const NameIndex& places, const auto& own) -> std::string {
+    const std::uint32_t* const found = places.find(own.name);
+    if (found == nullptr || all[*found].unit == own.unit) {
+      return "";
+    }
+    return fmt::format("{} is in {} there, {} here", own.name, unit_text(all[*found].unit), unit_text(own.unit));
+  };
+  const NameIndex parameters = by_name(kept.parameters);
+  for (const ProgramSignal& own : shape.parameters) {
+    if (std::string told = of_named(kept.parameters, parameters, own); !told.empty()) {
+      return told;
+    }
+  }
+  const NameIndex states = by_name(kept.state);
+  for (const StateField& own : shape.state) {
+    if (std::string told = of_named(kept.state, states, own); !told.empty()) {
+      return told;
+    }
+  }
+  const NameIndex retained = by_name(kept.inputs);
+  for (const std::size_t input : inputs) {
+    if (std::string told = of_named(kept.inputs, retained, shape.inputs[input]); !told.empty()) {
+      return told;
+    }
+  }
+  return "";
+}
+
 CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> values, const ProgramShape& shape,
                                std::span<const double> given) {
   CarriedValues carried{.parameters = {given.begin(), given.end()}};
   const auto places = by_name(kept.parameters);
   for (std::size_t i = 0; i < shape.parameters.size(); ++i) {
     const ProgramSignal& own = shape.parameters[i];
-    const auto found = places.find(own.name);
-    if (found == places.end()) {
+    const std::uint32_t* const found = places.find(own.name);
+    if (found == nullptr) {
       carried.left.push_back(left(own.name, only_here));
       continue;
     }
-    const KeptLayout::Parameter& was = kept.parameters[found->second];
+    const KeptLayout::Parameter& was = kept.parameters[*found];
     std::string why = difference(was.type, was.unit, own.type, own.unit);
-    if (why.empty() && !refusal_of(own, values[found->second]).empty()) {
-      why = fmt::format("{:.6g} is outside of its limits", values[found->second]);
+    if (why.empty() && !refusal_of(own, values[*found]).empty()) {
+      why = fmt::format("{:.6g} is outside of its limits", values[*found]);
     }
     if (why.empty()) {
-      carried.parameters[i] = values[found->second];
+      carried.parameters[i] = values[*found];
       ++carried.parameters_taken;
     } else {
       carried.left.push_back(left(own.name, why));
@@ -287,12 +317,12 @@ std::vector<std::optional<double>> carry_inputs(const KeptLayout& kept, std::spa
   const auto places = by_name(kept.inputs);
   for (const std::size_t input : wanted) {
     const ProgramSignal& own = shape.inputs[input];
-    const auto found = places.find(own.name);
-    if (found == places.end() || found->second >= values.size()) {
+    const std::uint32_t* const found = places.find(own.name);
+    if (found == nullptr || *found >= values.size()) {
       continue;  // it was not retained before: it begins as the diagram says
     }
-    const KeptLayout::Parameter& was = kept.inputs[found->second];
-    const double value = values[found->second];
+    const KeptLayout::Parameter& was = kept.inputs[*found];
+    const double value = values[*found];
     std::string why = difference(was.type, was.unit, own.type, own.unit);
     if (why.empty() && !refusal_of(own, value).empty()) {
       why = fmt::format("{:.6g} is outside of its limits", value);
@@ -303,6 +333,7 @@ std::vector<std::optional<double>> carry_inputs(const KeptLayout& kept, std::spa
       left_out.push_back(left(own.name, why));
     }
   }
+  tell_gone(kept.inputs, shape.inputs, left_out);
   return carried;
 }
 
@@ -317,12 +348,12 @@ std::vector<SharedNumber> shared_state(const KeptLayout& kept, const ProgramShap
   const auto places = by_name(kept.state);
   for (std::size_t i = 0; i < shape.state.size(); ++i) {
     const StateField& own = shape.state[i];
-    const auto found = places.find(own.name);
-    if (found == places.end()) {
+    const std::uint32_t* const found = places.find(own.name);
+    if (found == nullptr) {
       left_out.push_back(left(own.name, only_here));
       continue;
     }
-    const StateField& was = kept.state[found->second];
+    const StateField& was = kept.state[*found];
     if (std::string why = refusal_of(was, own); !why.empty()) {
       left_out.push_back(left(own.name, why));
       continue;

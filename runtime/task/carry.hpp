@@ -51,6 +51,11 @@ struct CarriedValues {
 /// Its name: LAG.Y of "LAG.Y (um there, mm here)".
 [[nodiscard]] std::string without_reason(std::string_view left);
 
+/// What a layout and the program both have by one name, and in other units: "AMP.K is in V/mm there, V/um here". Empty
+/// where there is none. `inputs`: those that are to be retained. Bytes of one diagram mean something else then.
+[[nodiscard]] std::string other_unit(const KeptLayout& kept, const ProgramShape& shape,
+                                     std::span<const std::size_t> inputs);
+
 /// Parameters whose name, type and unit are the same, and whose value lies within the program's limits.
 [[nodiscard]] CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> values,
                                              const ProgramShape& shape, std::span<const double> given);

@@ -167,7 +167,9 @@ Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy p
   Recovery recovery{.sequence = sequence_of(slot), .next_slot = 1 - newest};
   const bool any_broken = std::ranges::any_of(slots, [](const Slot& one) { return one.status == SlotStatus::broken; });
   const bool is_whole = slot.status == SlotStatus::whole;
-  const bool is_of_diagram = is_whole && diagram_of(slot.values.layout) == diagram_of(layout);
+  const bool is_of_layout = is_whole && diagram_of(slot.values.layout) == diagram_of(layout);
+  const std::string other_unit = is_of_layout && checks.other_unit ? checks.other_unit(slot.values) : "";
+  const bool is_of_diagram = is_of_layout && other_unit.empty();
   const std::string unfit = is_of_diagram && checks.refusal ? checks.refusal(slot.values) : "";
   const bool is_taken = is_of_diagram && unfit.empty() && slot.values.layout == layout;
   const bool is_of_other_engine = is_of_diagram && unfit.empty() && !is_taken && !slot.values.described.empty();
@@ -188,10 +190,11 @@ Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy p
     recovery.next_slot = 0;
     return recovery;  // a first start
   }
-  const std::string what = !unfit.empty()     ? "The retained parameters cannot be: " + unfit
-                           : is_whole         ? "The retained values are of another diagram."
-                           : !unsound.empty() ? "No retain slot can be taken: " + unsound + " is not finite."
-                                              : "No retain slot is whole.";
+  const std::string what = !unfit.empty()        ? "The retained parameters cannot be: " + unfit
+                           : !other_unit.empty() ? "The retained values are of other units: " + other_unit + "."
+                           : is_whole            ? "The retained values are of another diagram."
+                           : !unsound.empty()    ? "No retain slot can be taken: " + unsound + " is not finite."
+                                                 : "No retain slot is whole.";
   if (policy != MismatchPolicy::cold) {
     recovery.refused = what;
     return recovery;

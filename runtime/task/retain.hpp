@@ -113,6 +113,9 @@ struct RetainChecks {
   std::function<std::string(const RetainedValues&)> refusal{};
   /// The number of their state that is not finite; empty where none is. Such a slot is as one that is broken.
   std::function<std::string(const RetainedValues&)> not_finite{};
+  /// A value of theirs that the program has in another unit: "AMP.K is in V/mm there, V/um here". They are of another
+  /// diagram then, though it has the same layout, in which units do not count. Empty where there is none.
+  std::function<std::string(const RetainedValues&)> other_unit{};
 };
 
 /// Reads both slots and says how to start; changes nothing.

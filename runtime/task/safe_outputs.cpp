@@ -25,11 +25,15 @@ double rate_of(const OutputSafety& output) noexcept {
 
 }  // namespace
 
+double safe_value(const OutputSafety& output) noexcept {
+  return limited(output, output.value);
+}
+
 double longest_way(const OutputSafety& output, double sample_time) noexcept {
   if (output.action == SafeAction::hold) {
     return 0.0;
   }
-  const double safe = limited(output, output.value);
+  const double safe = safe_value(output);
   const double distance = std::max(output.high - safe, safe - output.low);
   const double way = std::isinf(rate_of(output)) ? 0.0 : distance / rate_of(output);
   return static_cast<double>(output.hold_cycles) * sample_time + way;
@@ -49,7 +53,7 @@ SafeOutputs::SafeOutputs(std::vector<OutputSafety> outputs, double sample_time)
       faults_(outputs_.size(), Fault::none),
       since_(outputs_.size(), 0) {
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
-    values_[i] = limited(outputs_[i], outputs_[i].value);
+    values_[i] = safe_value(outputs_[i]);
   }
 }
 
@@ -82,7 +86,7 @@ double SafeOutputs::next(std::size_t output) const noexcept {
 }
 
 double SafeOutputs::target(std::size_t output) const noexcept {
-  return limited(outputs_[output], outputs_[output].value);
+  return safe_value(outputs_[output]);
 }
 
 std::size_t SafeOutputs::worst_output() const noexcept {

@@ -42,6 +42,9 @@ struct OutputSafety {
   double ramp = std::numeric_limits<double>::infinity();  ///< a second
 };
 
+/// The safe value, or where it is outside of the limits, the limit.
+[[nodiscard]] double safe_value(const OutputSafety& output) noexcept;
+
 /// The longest time, in seconds, in which an output is safe from the first cycle of a fault on, from wherever it may
 /// be: its hold, then its way at its ramp and slew limit. Infinite where it has a rate and no limits.
 [[nodiscard]] double longest_way(const OutputSafety& output, double sample_time) noexcept;

@@ -80,6 +80,7 @@ TaskDoor::TaskDoor(const StepProgram& program, const std::vector<InputSettings>&
     point.low = std::max(point.low, safety[i].low);
     point.high = std::min(point.high, safety[i].high);
     add(std::move(point));
+    safe_.push_back(safe_value(safety[i]));
   }
   first_parameter_ = points_.size();
   for (const ProgramSignal& parameter : shape.parameters) {
@@ -121,6 +122,7 @@ TaskDoor::Row TaskDoor::read_row(std::uint64_t& cycle) {
   if (!snapshots_.read(cycle, std::span(row_).first(live_ ? common : row_.size()))) {
     std::ranges::fill(row_, 0.0);
     std::ranges::copy(wanted_.inputs, row_.begin());
+    std::ranges::copy(safe_, row_.begin() + static_cast<std::ptrdiff_t>(inputs_));
     return Row::none;
   }
   if (live_) {

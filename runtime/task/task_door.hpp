@@ -119,6 +119,7 @@ class TaskDoor final : public PointDoor {
   std::size_t first_command_ = 0;
   SnapshotRing snapshots_;
   std::vector<double> published_;  ///< of the cyclic thread
+  std::vector<double> safe_;       ///< by output: what it is before the first cycle
   std::vector<SampleTap*> taps_{};
   std::int64_t high_lateness_ = 0;
   std::atomic<std::uint16_t> shortages_{0};

@@ -25,6 +25,7 @@ namespace hysteron {
 namespace {
 
 using test::soon;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 using ::testing::Not;
@@ -155,6 +156,32 @@ TEST(OnlineChangeCommand, ChangesAndChangesBackByBothEngines) {
 
 /// SIGKILL as soon as the change is told: the next start runs the new version with what was carried, though values are
 /// retained by themselves once an hour only.
+/// The same files a second time would be a version of their own, and the way back would lead to the same text.
+TEST(OnlineChangeCommand, FilesThatRunAlreadyLeaveVersionAndWayBack) {
+  const test::Workbench bench;
+  bench.write("stage.st", stage(false));
+  bench.write("run.toml", online_run_file);
+  Served task(bench, "--engine interpreter");
+  ASSERT_TRUE(task.has_begun()) << task.told();
+  bench.write("stage.st", stage(true));
+  ASSERT_EQ(bench.shell("hysteron online-change run.toml").code, 0);
+  const auto same = bench.shell("hysteron online-change run.toml");
+  EXPECT_EQ(same.code, 0) << same.err;
+  EXPECT_EQ(same.out, "STAGE: nothing changed; version 2 runs on, and --back goes where it went before\n");
+  EXPECT_THAT(bench.shell("hysteron online-change run.toml --json").out,
+              AllOf(HasSubstr("\"changed\": false"), HasSubstr("\"version\": 2")));
+  EXPECT_THAT(bench.shell("hysteron online-change run.toml --as-given AMP.K").out,
+              StartsWith("STAGE: version 3 runs\n"))
+      << "more is wished than the files say";
+  EXPECT_THAT(bench.shell("hysteron online-change run.toml --back").out, StartsWith("STAGE: back; version 4 runs\n"));
+  EXPECT_EQ(bench.shell("hysteron online-change run.toml").out.substr(0, 22), "STAGE: nothing changed");
+  bench.write("stage.st", stage(false));
+  ASSERT_EQ(bench.shell("hysteron online-change run.toml").code, 0);
+  EXPECT_EQ(bench.shell("hysteron online-change run.toml").code, 0);
+  EXPECT_EQ(bench.shell("hysteron online-change run.toml --back").code, 0);
+  EXPECT_EQ(bench.read("stage.st"), stage(true));
+}
+
 TEST(OnlineChangeCommand, ACrashJustAfterItLosesNothing) {
   const test::Workbench bench;
   bench.write("stage.st", stage(false));

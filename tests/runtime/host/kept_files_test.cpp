@@ -43,8 +43,9 @@ struct HostRun {
   std::string err{};  ///< or the error that it was refused with
 };
 
-HostRun host_run(const std::string& rest, double a = 1.0) {
+HostRun host_run(const std::string& rest, double a = 1.0, const std::string& unit = "") {
   test::Accumulator program;
+  program.mutable_shape().parameters[0].unit = unit;
   program.set_parameter(0, a);
   HostRun outcome;
   testing::internal::CaptureStderr();
@@ -143,6 +144,22 @@ TEST_F(KeptFiles, ASlotThatCannotBeReadIsNotTakenForMissing) {
   EXPECT_TRUE(host_run(retain()).well);
 }
 
+/// An edit of units alone leaves the layout: 250 V/mm must not become 250 V/um.
+TEST_F(KeptFiles, AParameterOfAnotherUnitIsNotTakenOver) {
+  EXPECT_TRUE(host_run(retain(), 250.0, "V/mm").well);
+  EXPECT_THAT(host_run(retain("mismatch = \"refuse\"\n"), 0.25, "V/um").out,
+              StartsWith("HY811:5: The retained values are of other units: G.A is in V/mm there, V/um here."));
+  EXPECT_THAT(host_run(retain("mismatch = \"refuse\"\n"), 2.0, "V/mm").out,
+              HasSubstr("with 1 parameter as retained and not as given: G.A"));
+  const HostRun carried = host_run(retain(), 0.25, "V/um");
+  EXPECT_TRUE(carried.well);
+  EXPECT_THAT(carried.err, HasSubstr("G.A (V/mm there, V/um here)"));
+  EXPECT_THAT(carried.out, Not(HasSubstr("as retained and not as given")));
+  const HostRun cold = host_run(retain("mismatch = \"cold\"\n"), 2.0, "V/mm");
+  EXPECT_TRUE(cold.well);
+  EXPECT_THAT(cold.out, AllOf(HasSubstr("started cold"), Not(HasSubstr("as retained"))));
+}
+
 TEST_F(KeptFiles, ParametersThatAreRetainedAndNotAsGivenAreSaid) {
   EXPECT_TRUE(host_run(retain(), 1.5).well);
   EXPECT_THAT(host_run(retain(), 1.5).out, AllOf(HasSubstr(", from retained state 1;"), Not(HasSubstr("as given"))));
@@ -173,6 +190,20 @@ TEST_F(KeptFiles, ALockFileThatCannotBeOneIsRefusedAtItsTable) {
   std::filesystem::create_symlink(loop, loop);
   for (const std::string& file : {loop, folder / std::string(300, 'a'), loop + "/a.lock"}) {
     EXPECT_THAT(with(file), AllOf(StartsWith("HY100:5: "), HasSubstr(file))) << file;
+  }
+}
+
+/// A file that a power cut emptied has kept no address: who knows them from before has to hear of it.
+TEST_F(KeptFiles, ALockFileWithoutAnAddressIsSaid) {
+  const std::string table = fmt::format("[modbus]\nport = 0\nlock_file = \"{}\"\n", folder / "plant.registers");
+  EXPECT_THAT(host_run(table).err, Not(HasSubstr("had no address"))) << "a first start";
+  const std::string whole = contents_of(folder / "plant.registers");
+  EXPECT_THAT(host_run(table).err, Not(HasSubstr("had no address")));
+  for (const char* const rest : {"", "# Addresses of ACC", "\r\n\n"}) {
+    folder.write("plant.registers", rest);
+    EXPECT_THAT(host_run(table).err,
+                HasSubstr("plant.registers was there and had no address: registers have them anew"));
+    EXPECT_EQ(contents_of(folder / "plant.registers"), whole);
   }
 }
 

@@ -102,6 +102,22 @@ TEST(RegisterMap, ALockFileKeepsAddressesThroughEdits) {
   }
 }
 
+/// As in a diagram, Y_REF is y_ref. A line with the very name goes before one that is only alike.
+TEST(RegisterMap, ANameWrittenInOtherCaseKeepsItsAddress) {
+  const std::vector<Point> points{{.name = "A", .type = PointType::real32, .writable = true},
+                                  {.name = "y_ref", .type = PointType::real32, .writable = true}};
+  const auto map_of = [&](const std::string& lock) {
+    return make_register_map(points, {.title = "T", .lock_file = "t.lock", .lock_text = lock});
+  };
+  const RegisterMap map = map_of("holding 0 real32 Y_REF\nholding 4 real32 A\n");
+  EXPECT_EQ(addresses(map).at("y_ref").address, 0U);
+  EXPECT_TRUE(map.retired().empty());
+  EXPECT_THAT(lock_text(map), HasSubstr("\nholding 0 real32 y_ref\n"));
+  const RegisterMap both = map_of("holding 0 real32 Y_REF\nholding 8 real32 y_ref\nholding 4 real32 A\n");
+  EXPECT_EQ(addresses(both).at("y_ref").address, 8U);
+  EXPECT_EQ(both.retired().size(), 1U);
+}
+
 TEST(RegisterMap, APointThatChangedItsTypeGetsANewAddress) {
   std::vector<Point> points{{.name = "X", .type = PointType::real32, .writable = true}};
   const std::string lock = lock_text(make_register_map(points, {.title = "T"}));

@@ -11,7 +11,6 @@
 #include "runtime/mqtt/sparkplug.hpp"
 #include "tests/runtime/mqtt/mqtt_bench.hpp"
 #include "tests/runtime/mqtt/sparkplug_decoder.hpp"
-#include "tests/support/file_size_limit.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -160,78 +159,6 @@ TEST_F(Publishing, WhatWaitsOnTheDiskOutlivesTheProcess) {
   bench.turn();
   bench.stop();
   EXPECT_TRUE(OutboxFile(folder / "rows.sqlite", {"U", "Y"}).rows().empty()) << "the broker has them";
-}
-
-/// Eleven rows wait, and the broker has answered none.
-struct ElevenRows {
-  ElevenRows() { bench.settings.file = folder / "rows.sqlite"; }
-  void begin() {
-    bench.start();
-    bench.turn();
-    bench.run(100);
-    bench.turn();
-  }
-  [[nodiscard]] std::size_t rows_in_the_file(const std::string& owner = "") const {
-    return OutboxFile(bench.settings.file, {"U", "Y"}, owner).rows().size();
-  }
-
-  hysteron::test::ScratchFolder folder;
-  Broker broker;
-  MqttBench bench{broker.port()};
-};
-
-/// An end in order keeps all that waits, and loses nothing.
-TEST_F(Publishing, WhatWaitsAtTheEndIsKeptForTheNextStart) {
-  ElevenRows waiting;
-  MqttBench& bench = waiting.bench;
-  waiting.begin();
-  bench.finish();
-  EXPECT_EQ(bench.count().lost, 0U);
-  EXPECT_EQ(bench.count().waiting, 11U);
-  EXPECT_THAT(bench.said(), HasSubstr("11 rows wait in "));
-  bench.stop();
-  EXPECT_EQ(waiting.rows_in_the_file(), 11U);
-}
-
-/// What went to the file before the disk was full waits there, and is not lost.
-TEST_F(Publishing, AFullDiskAtTheEndLosesWhatIsNotInTheFileAlone) {
-  ElevenRows waiting;
-  MqttBench& bench = waiting.bench;
-  waiting.begin();
-  bench.pass(2100 * MqttBench::ms);
-  bench.turn();  // eleven rows are on the disk
-  {
-    const hysteron::test::FileSizeLimit limit(1024);
-    bench.run(200);
-    bench.turn();
-    bench.pass(2100 * MqttBench::ms);
-    bench.turn();
-    bench.finish();
-  }
-  EXPECT_EQ(bench.count().lost, 20U);
-  EXPECT_EQ(bench.count().waiting, 11U);
-  const std::string said = bench.said();
-  EXPECT_THAT(said, HasSubstr("rows that wait are in memory alone: "));
-  EXPECT_THAT(said, HasSubstr("11 rows wait in "));
-  EXPECT_THAT(bench.remarks().problem(), HasSubstr("20 since the start"));
-  bench.stop();
-  EXPECT_EQ(waiting.rows_in_the_file(), 11U);
-}
-
-TEST_F(Publishing, AFileOfAnotherTaskIsLeftAloneAndTheMendIsSaid) {
-  ElevenRows waiting;
-  MqttBench& bench = waiting.bench;
-  bench.settings.owner = "STAGE on topic a";
-  waiting.begin();
-  bench.finish();
-  bench.stop();
-  bench.settings.owner = "STAGEB on topic b";
-  bench.start();
-  bench.turn();
-  EXPECT_THAT(bench.said(), HasSubstr("holds 11 rows of STAGE on topic a, and is left alone. Each task needs a file of "
-                                      "its own: write another one under [mqtt]"));
-  bench.stop();
-  EXPECT_EQ(waiting.rows_in_the_file("STAGE on topic a"), 11U);
 }
 
 TEST_F(Publishing, AFileThatCannotBeWrittenIsSaidAndRowsGoByMemory) {

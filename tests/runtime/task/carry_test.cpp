@@ -168,6 +168,41 @@ TEST(Carry, RetainedInputsAreFoundByNameTypeUnitAndLimits) {
   EXPECT_THAT(left, ElementsAre("HIGH (5 is outside of its limits)", "MM (mm there, um here)"));
 }
 
+TEST(Carry, ARetainedInputIsFoundWithoutRegardToCaseAndTheGoneAreSaid) {
+  const ProgramShape was{.inputs = {{.name = "Y_REF", .unit = "mm"}, {.name = "OLD"}}};
+  const KeptLayout kept = read_description(describe(was, std::vector<std::size_t>{0, 1}), 0);
+  const ProgramShape is{.inputs = {{.name = "y_ref", .unit = "mm"}}};
+  std::vector<std::string> left;
+  EXPECT_THAT(carry_inputs(kept, std::vector{0.5, 2.0}, is, std::vector<std::size_t>{0}, left),
+              ElementsAre(std::optional(0.5)));
+  EXPECT_THAT(left, ElementsAre("OLD (gone)"));
+}
+
+/// The layout of a diagram does not say its units: bytes that fit mean something else then.
+TEST(Carry, AnotherUnitOfTheSameValueIsSaid) {
+  const auto whole = [] {
+    ProgramShape shape = before();
+    shape.inputs = {{.name = "X", .unit = "mm"}};
+    return shape;
+  };
+  const std::vector<std::size_t> retained{0};
+  const KeptLayout kept = read_description(describe(whole(), retained), size_before);
+  EXPECT_EQ(other_unit(kept, whole(), retained), "");
+  ProgramShape edited = whole();
+  edited.parameters[0].unit = "mm/V";
+  EXPECT_EQ(other_unit(kept, edited, retained), "HYST.C1 is in um/V there, mm/V here");
+  edited = whole();
+  edited.state[0].unit = "";
+  EXPECT_EQ(other_unit(kept, edited, retained), "HYST.P is in um there, no unit here");
+  edited = whole();
+  edited.inputs[0].unit = "um";
+  EXPECT_EQ(other_unit(kept, edited, retained), "X is in mm there, um here");
+  EXPECT_EQ(other_unit(kept, edited, {}), "") << "an input that is not to be retained";
+  edited.inputs[0].name = "Z";
+  EXPECT_EQ(other_unit(kept, edited, retained), "");
+  EXPECT_EQ(other_unit({}, edited, retained), "") << "a file of before there were names in it";
+}
+
 /// A delay of so many steps is another time then.
 TEST(Carry, TheStateOfAnotherPeriodIsLeft) {
   ProgramShape shape = before();

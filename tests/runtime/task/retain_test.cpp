@@ -181,6 +181,29 @@ TEST(Retain, ParametersThatTheProgramCannotTakeAreRefusedOrPutAside) {
   EXPECT_TRUE(cold.aside[0]);
 }
 
+TEST(Retain, TheSameLayoutInOtherUnitsIsAnotherDiagram) {
+  MemoryFiles files;
+  auto described = some_values(4);
+  described.layout = "9f3c-interpreter";
+  described.described = "p\tG.A\tLREAL\tum\n";
+  files.slots[0] = encode_slot(described);
+  const RetainChecks check{.other_unit = [&](const RetainedValues& values) {
+    EXPECT_EQ(values.described, described.described);
+    return std::string("G.A is in um there, mm here");
+  }};
+  for (const char* const layout : {"9f3c-interpreter", "9f3c-compiled"}) {
+    EXPECT_EQ(recover(files, layout, MismatchPolicy::refuse, check).refused,
+              "The retained values are of other units: G.A is in um there, mm here.");
+    const auto cold = recover(files, layout, MismatchPolicy::cold, check);
+    EXPECT_FALSE(cold.values);
+    EXPECT_TRUE(cold.aside[0]);
+    const auto carried = recover(files, layout, MismatchPolicy::carry, check);
+    EXPECT_TRUE(carried.values.has_value());
+    EXPECT_TRUE(carried.by_name);
+    EXPECT_TRUE(carried.aside[0]) << "the diagram of before can go on from it";
+  }
+}
+
 TEST(Retain, AnEditedDiagramCarriesWhatHasNames) {
   MemoryFiles files;
   auto described = some_values(4);

@@ -47,6 +47,18 @@ struct DoorBench {
   TaskDoor door{program, {{}}, {{}, {}}};
 };
 
+/// Zero may be what an output never is.
+TEST(TaskDoor, BeforeTheFirstCycleOutputsAreTheirSafeValues) {
+  const Accumulator program;
+  TaskDoor door(program, {{}}, {{.low = 2.0, .high = 8.0, .value = 3.0}, {.low = 4.0, .high = 8.0}});
+  LiveValues live;
+  door.read_live(live);
+  for (const auto& [name, safe] : {std::pair("Y", 3.0), std::pair("TORN", 4.0)}) {
+    EXPECT_EQ(test::value(door, name), safe);
+    EXPECT_EQ(live.values[point(door, name)], safe) << "on the live page";
+  }
+}
+
 using Staged = std::pair<std::string, double>;
 
 TEST(TaskDoor, ACommitOfThePageLeavesWhatModbusHasStaged) {

@@ -153,7 +153,7 @@ void refuse_coarse_clock(const Table& table, const Times& times, const Place& pl
         before);
     throw InputError(list);
   }
-  const bool missing = fault.step > 1.5 * fault.usual;
+  const bool missing = rows_missing_before(times.seconds, fault.row, fault.usual) > 0;
   std::string mend = fmt::format(
       "{}read it with --resample linear, where signals are analog and slow, or --resample hold, for encoders and "
       "commands, which step.",
@@ -275,6 +275,12 @@ OrderedTimes times_in_order(Table& table, const ReadOptions& options) {
   return result;
 }
 
+/// Where a few samples are no numbers, a line over them invents little.
+bool is_worth_bridging(const TableColumn& column, std::size_t rows) {
+  constexpr std::size_t one_in = 20;
+  return column.is_gappy && one_in * column.missing.size() <= rows;
+}
+
 enum class Uneven : std::uint8_t { Refused, Taken };
 
 Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven::Refused) {
@@ -312,6 +318,11 @@ Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven
       column.fault.reset();
     }
     if (auto fault = fault_of(table, i)) {
+      if (fault->number == error::number_not_finite && is_worth_bridging(column, table.rows)) {
+        fault->mend +=
+            fmt::format(" It is {} of {} rows: --resample linear bridges them, or hold, where the signal steps.",
+                        column.missing.size(), table.rows);
+      }
       unreadable.push_back({.name = column.name, .fault = std::move(*fault)});
       continue;
     }
@@ -442,6 +453,22 @@ Record parse_uneven_record(const std::string& file, std::string bytes, const Rea
   return record_of(format.read(file, std::move(bytes), whole), whole, Uneven::Taken);
 }
 
+std::size_t rows_missing_before(std::span<const double> time, std::size_t row, double usual) {
+  constexpr std::size_t reach = 3;
+  const double step = time[row] - time[row - 1];
+  if (!(step > 1.5 * usual)) {
+    return 0;
+  }
+  const auto rows_in = [&](double span, std::size_t steps) {
+    return std::clamp(std::round(span / usual) - static_cast<double>(steps), 0.0, 1e15);
+  };
+  const std::size_t first = row - std::min(row, reach + 1);
+  const std::size_t last = std::min(time.size() - 1, row + reach);
+  // At an end of the record fewer neighbours tell, and without any the step itself.
+  return static_cast<std::size_t>(
+      std::min(std::max(1.0, rows_in(step, 1)), rows_in(time[last] - time[first], last - first)));
+}
+
 TimeSurvey survey_of(std::span<const double> time) {
   TimeSurvey result{.usual = median_step(time)};
   double squares = 0.0;
@@ -450,9 +477,9 @@ TimeSurvey survey_of(std::span<const double> time) {
     const double step = time[k] - time[k - 1];
     if (!(step > 0.0)) {
       result.first_backward = result.backward++ == 0 ? k + 1 : result.first_backward;
-    } else if (step > 1.5 * result.usual) {
+    } else if (const std::size_t missing = rows_missing_before(time, k, result.usual); missing > 0) {
       result.first_gap = result.gaps++ == 0 ? k : result.first_gap;
-      result.missing += static_cast<std::size_t>(std::max(1.0, std::min(std::round(step / result.usual) - 1.0, 1e15)));
+      result.missing += missing;
       result.longest_gap = std::max(result.longest_gap, step);
     } else if (step < 0.5 * result.usual) {
       ++result.close;

@@ -18,7 +18,7 @@ namespace hysteron::records {
 struct TimeSurvey {
   double usual = 0.0;              ///< s: the median step
   double jitter = 0.0;             ///< s: of the other steps from it, RMS
-  std::size_t gaps = 0;            ///< steps of more than one and a half of it
+  std::size_t gaps = 0;            ///< steps in which rows are missing
   std::size_t missing = 0;         ///< rows that would fill them
   std::size_t first_gap = 0;       ///< the row before it, from 1 on; 0 without gaps
   double longest_gap = 0.0;        ///< s
@@ -28,6 +28,11 @@ struct TimeSurvey {
 
   [[nodiscard]] bool is_even() const { return gaps == 0 && close == 0 && backward == 0 && jitter <= 0.02 * usual; }
 };
+
+/// How many rows are missing between a row, not the first, and the one before it: a step of more than one and a half of
+/// the usual one, and the rows about it are fewer than fill their time. A stamp that came late or early is no gap.
+[[nodiscard]] std::size_t rows_missing_before(std::span<const double> time, std::size_t row, double usual);
+
 /// Of two times or more.
 [[nodiscard]] TimeSurvey survey_of(std::span<const double> time);
 

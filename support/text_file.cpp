@@ -1,8 +1,10 @@
 #include "support/text_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -18,25 +20,37 @@
 namespace hysteron {
 namespace {
 
-/// A file of nearly the same name in the same folder, for the mend.
-std::string neighbour(const std::filesystem::path& path) {
+/// What stands in the same folder, for the mend: a file of nearly the same name, else those of the same kind, where
+/// they are few.
+std::string neighbours(const std::filesystem::path& path) {
   constexpr std::size_t most = 10000;
+  constexpr std::size_t few = 3;
   std::error_code ignored;
   const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   std::vector<std::string> names;
+  std::vector<std::string> of_kind;
   auto entries = std::filesystem::directory_iterator(folder, ignored);
   for (; entries != std::filesystem::directory_iterator() && names.size() < most; entries.increment(ignored)) {
-    names.push_back(entries->path().filename().string());
+    const std::filesystem::path name = entries->path().filename();
+    names.push_back(name.string());
+    if (path.has_extension() && name.extension() == path.extension()) {
+      of_kind.push_back((path.parent_path() / name).string());
+    }
   }
-  return std::string(nearest_name(path.filename().string(), names));
+  const std::string near(nearest_name(path.filename().string(), names));
+  if (!near.empty()) {
+    return (path.parent_path() / near).string();
+  }
+  std::ranges::sort(of_kind);
+  return of_kind.size() > few ? std::string() : fmt::format("{}", fmt::join(of_kind, " or "));
 }
 
 [[noreturn]] void refuse(const std::string& path, int reason) {
   const auto shown = path.empty() ? std::string("(no name)") : path;
   std::string mend = "give the path of an existing file, as seen from the current folder.";
   if (reason == ENOENT) {
-    if (const auto near = neighbour(path); !near.empty()) {
-      mend = fmt::format("did you mean {}?", (std::filesystem::path(path).parent_path() / near).string());
+    if (const auto near = neighbours(path); !near.empty()) {
+      mend = fmt::format("did you mean {}?", near);
     }
   } else if (reason == EISDIR) {
     mend = "give the path of a file inside it.";

@@ -6,11 +6,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "records/read.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
+#include "support/shell_words.hpp"
 #include "support/text_file.hpp"
 #include "support/trimmed.hpp"
 #include "tool/commands.hpp"
@@ -92,6 +94,22 @@ std::pair<std::string, std::string> pair_of(const std::string& text) {
   return {x, y};
 }
 
+/// A record of uneven times is refused here; another command draws it as it is.
+records::Record read_even(const std::string& file, const std::string& bytes, const records::ReadOptions& reading) {
+  try {
+    return records::parse_record(file, bytes, reading);
+  } catch (const InputError& refused) {
+    Diagnostics told;
+    for (Diagnostic one : refused.diagnostics().all()) {
+      if (one.number == error::uneven_time) {
+        one.mend += fmt::format(" As it is, `hysteron record {} --picture X.svg` draws it.", shell_word(file));
+      }
+      told.add(std::move(one));
+    }
+    throw InputError(std::move(told));
+  }
+}
+
 std::vector<NamedRecord> records_of(const PlotOptions& options, Console& console) {
   const records::ReadOptions reading = read_options(with_settings_of(options.parameters, options.record));
   const std::vector<std::string> names = short_names(options.files);
@@ -99,7 +117,7 @@ std::vector<NamedRecord> records_of(const PlotOptions& options, Console& console
   for (std::size_t i = 0; i < options.files.size(); ++i) {
     const std::string bytes = read_text_file(options.files[i]);
     console.sources().put(options.files[i], bytes);
-    records.push_back({.name = names[i], .record = records::parse_record(options.files[i], bytes, reading)});
+    records.push_back({.name = names[i], .record = read_even(options.files[i], bytes, reading)});
     const records::Record& record = records.back().record;
     if (record.columns().empty()) {
       throw InputError(error::bad_usage, {.file = options.files[i]},

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -291,7 +292,8 @@ int show(const RecordCommandOptions& options, Console& console) {
     if (options.diagram.parameters.empty()) {
       throw InputError(error::bad_usage, {},
                        "--for asks whether the record excites what is to be fitted, and no file says what that is.",
-                       "name the parameter file with tables [fit], as --params p.toml.");
+                       fmt::format("name the parameter file with tables [fit], as --params {}.",
+                                   std::filesystem::path(options.diagram.file).stem().string() + ".toml"));
     }
     program = compile_file(options.diagram.file, {.top = options.diagram.top}, warnings);
     refuse_ports_named_as_time(warnings);

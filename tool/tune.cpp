@@ -17,6 +17,7 @@
 #include "tool/tune_goal.hpp"
 #include "tool/tune_options.hpp"
 #include "tool/tune_report.hpp"
+#include "tool/tune_words.hpp"
 #include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {
@@ -70,8 +71,10 @@ std::string diagnose_command(const TuneOptions& options) {
   for (const std::string& log : options.logs) {
     command += " --log " + shell_word(log);
   }
-  return command +
-         fmt::format(" --params {} --out diagnosis{}", shell_word(options.output), record_arguments(options.record));
+  std::vector<std::string> inputs = options.logs;
+  inputs.insert(inputs.end(), {options.diagram.file, options.output});
+  return command + fmt::format(" --params {} --out {}{}", shell_word(options.output),
+                               folder_beside("diagnosis", inputs), record_arguments(options.record));
 }
 
 int tune(const TuneOptions& options, Console& console) {

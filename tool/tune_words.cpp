@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <string>
 
 #include "support/numbers.hpp"
+#include "support/overwriting.hpp"
 
 namespace hysteron::tool {
 
@@ -61,6 +64,20 @@ std::string unexplained(const TuneReport& report) {
 std::string what_is_not_in_the_model(const TuneReport& report) {
   const std::string text = unexplained(report);
   return text.empty() ? text : text + fmt::format("This looks for the cause:\n  {}\n", report.diagnose_command);
+}
+
+std::string folder_beside(const std::string& name, const std::vector<std::string>& inputs) {
+  const auto holds_input = [&](const std::string& folder) {
+    return std::ranges::any_of(inputs, [&](const std::string& input) {
+      const auto of_input = std::filesystem::path(input).parent_path();
+      return same_file(folder, of_input.empty() ? "." : of_input.string());
+    });
+  };
+  std::string folder = name;
+  for (int number = 2; holds_input(folder); ++number) {
+    folder = name + std::to_string(number);
+  }
+  return folder;
 }
 
 double cost_at_start(const TuneReport& report, std::size_t unknown) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "tool/tune_report.hpp"
 
@@ -29,6 +30,9 @@ namespace hysteron::tool {
 /// A paragraph where the fit leaves of an output more than its noise, with the command that looks for the cause; else
 /// nothing. What is left stands out of the noise as the diagnosis asks it to, and its samples hang together.
 [[nodiscard]] std::string what_is_not_in_the_model(const TuneReport& report);
+
+/// `name`, or name2, name3 and so on: the first that is no folder of an input. A command that is printed writes there.
+[[nodiscard]] std::string folder_beside(const std::string& name, const std::vector<std::string>& inputs);
 
 /// By what the sum of squares would grow if an unknown had stayed at its start and the others were fitted again, as a
 /// factor on the RMSE: √(1 + (x − x₀)²·τ/((N − n)·σ²)), the parabola at the solution. NaN where σ is not known, and of

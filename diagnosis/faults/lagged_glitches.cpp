@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "diagnosis/faults/decays.hpp"
-#include "diagnosis/faults/glitches.hpp"
+#include "diagnosis/noise/glitches.hpp"
 #include "diagnosis/model/least_squares.hpp"
 #include "diagnosis/model/parallel.hpp"
 #include "diagnosis/model/task.hpp"

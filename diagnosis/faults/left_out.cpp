@@ -7,10 +7,10 @@
 #include <ranges>
 #include <utility>
 
-#include "diagnosis/faults/glitches.hpp"
 #include "diagnosis/faults/missed_samples.hpp"
 #include "diagnosis/model/least_squares.hpp"
 #include "diagnosis/model/task.hpp"
+#include "diagnosis/noise/glitches.hpp"
 #include "support/median.hpp"
 
 namespace hysteron::diagnosis {

@@ -186,6 +186,11 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
   const std::vector<double> shares = shares_of(findings, chosen);
   const Program& program = *chosen.variant.program;
   const std::vector<std::string> units = units::Solution(program.graph, program.schedule).parameters();
+  // As the wires make it: an unknown that was proposed has the unit of its block, 'x.
+  const auto unit_at = [&](const std::string& path) {
+    const std::int64_t at = find_parameter(program.graph, path);
+    return at < 0 ? std::string() : units[static_cast<std::size_t>(at)];
+  };
   std::vector<EffectFinding> result;
   for (std::size_t i = 0; i < chosen.variant.effects.size(); ++i) {
     const Applied& applied = chosen.variant.effects[i];
@@ -198,7 +203,7 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
       if (!own || !std::isfinite(chosen.fit.x[at])) {  // another effect's, or a bound that is not there
         continue;
       }
-      finding.parameters.push_back(finding_of(leaf(unknown.path), unknown.unit, chosen.fit.x[at], errors[at],
+      finding.parameters.push_back(finding_of(leaf(unknown.path), unit_at(unknown.path), chosen.fit.x[at], errors[at],
                                               model.lower()[at], model.upper()[at]));
       finding.parameters.back().role = applied.parameter(unknown.path).field.role;
       if (errors[at] > undetermined * std::abs(chosen.fit.x[at]) || !has_influence(chosen.fit, at, unknown.typical)) {
@@ -208,7 +213,7 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
     for (const auto& [path, value] : applied.settings) {
       const std::int64_t at = find_parameter(program.graph, path);
       if (at >= 0 && program.graph.parameters[static_cast<std::size_t>(at)].field.type != Type::Bool) {
-        finding.settings.push_back({.name = leaf(path), .value = value, .unit = units[static_cast<std::size_t>(at)]});
+        finding.settings.push_back({.name = leaf(path), .value = value, .unit = unit_at(path)});
       }
     }
     for (const auto& [pin, driver] : applied.wires) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -33,6 +34,7 @@ records::Record renamed(const records::Record& record, const std::string& from, 
   std::vector<records::Column> columns = record.columns();
   for (records::Column& column : columns) {
     if (language::same_name(column.name, from)) {
+      column.in_file = column.name_in_file();
       column.name = to;
     }
   }
@@ -40,7 +42,64 @@ records::Record renamed(const records::Record& record, const std::string& from, 
   return {{time.begin(), time.end()}, record.sample_time(), std::move(columns), {.file = record.file()}};
 }
 
+/// Whether the first part of a name, before its dot, is a block of the diagram.
+bool begins_with_instance(const Graph& graph, const std::string& name) {
+  const std::string first = name.substr(0, name.find('.'));
+  return std::ranges::any_of(graph.nodes, [&](const Node& node) {
+    return language::same_name(node.path.substr(0, node.path.find_first_of(".#")), first);
+  });
+}
+
+/// A name of the language from that of a column: HALL_TEMP of Hall.Temp. None that the diagram or a record has.
+std::string driver_name(const DiagnosisInput& input, const std::string& column) {
+  std::string name;
+  for (const char c : language::upper(column)) {
+    const bool fits = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    if (fits || (!name.empty() && name.back() != '_')) {
+      name += fits ? c : '_';
+    }
+  }
+  name.erase(name.find_last_not_of('_') + 1);
+  if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0) {
+    name = "C_" + name;
+  }
+  const auto is_taken = [&](const std::string& candidate) {
+    return is_port(input.program.graph, candidate) || begins_with_instance(input.program.graph, candidate) ||
+           std::ranges::any_of(input.records,
+                               [&](const records::Record& record) { return record.find(candidate) != nullptr; });
+  };
+  std::string result = name;
+  for (int number = 2; is_taken(result); ++number) {
+    result = fmt::format("{}_{}", name, number);
+  }
+  return result;
+}
+
 }  // namespace
+
+DiagnosisInput with_named_drivers(const DiagnosisInput& input, std::vector<std::string>& remarks) {
+  DiagnosisInput result = input;
+  for (const records::Column& column : input.records.front().columns()) {
+    const auto moves_in = [&](const records::Record& record) {
+      const records::Column* const there = record.find(column.name);
+      return there != nullptr && std::ranges::min(there->values) < std::ranges::max(there->values);
+    };
+    if (column.name.find('.') == std::string::npos || begins_with_instance(input.program.graph, column.name) ||
+        !std::ranges::all_of(input.records, moves_in)) {
+      continue;
+    }
+    const std::string name = driver_name(result, column.name);
+    for (records::Record& record : result.records) {
+      record = renamed(record, column.name, name);
+    }
+    result.file.record.columns.push_back({.key = name, .value = {.text = column.name_in_file()}});
+    remarks.push_back(
+        fmt::format("The column {0} is tried as a driver by the name {1}, which `improved.toml` keeps: "
+                    "with another parameter file, give --column {1}={0}.",
+                    column.name_in_file(), name));
+  }
+  return result;
+}
 
 DiagnosisInput with_inner_signals(const DiagnosisInput& input, std::vector<std::string>& signals) {
   DiagnosisInput result = input;
@@ -127,6 +186,10 @@ std::vector<std::string> unmatched_columns(const DiagnosisInput& input) {
       remarks.push_back(fmt::format("The column {} is no signal of {} and is left aside{}", name,
                                     input.program.graph.name,
                                     near.empty() ? "." : fmt::format(": did you mean {}?", near)));
+      if (begins_with_instance(input.program.graph, name)) {
+        remarks.back() += fmt::format(" Where it may be a cause, name it without a dot: --column {}={}.",
+                                      driver_name(input, name), name);
+      }
     } else if (edge->definition != top) {
       remarks.push_back(fmt::format(
           "The column {} is a signal inside an inner block and is left aside: only signals of {} itself cut it.", name,

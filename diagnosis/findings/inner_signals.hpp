@@ -14,6 +14,11 @@
 
 namespace hysteron::diagnosis {
 
+/// The input with a name of the language for each column with a dot that may drive something, HALL_TEMP for Hall.Temp:
+/// its first part is no block of the diagram, and all records have it and see it move. `remarks` say the names, and the
+/// parameter file has them as names of columns.
+[[nodiscard]] DiagnosisInput with_named_drivers(const DiagnosisInput& input, std::vector<std::string>& remarks);
+
 /// The input with an output for each inner signal that all records hold, under the name that the column then has too.
 /// As it was where there is none. Adds the names of these outputs to `signals`.
 [[nodiscard]] DiagnosisInput with_inner_signals(const DiagnosisInput& input, std::vector<std::string>& signals);

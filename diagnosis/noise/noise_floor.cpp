@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "diagnosis/noise/glitches.hpp"
 #include "diagnosis/noise/spectrum.hpp"
 #include "diagnosis/noise/stretch_noise.hpp"
 #include "diagnosis/policy.hpp"
@@ -160,6 +161,93 @@ double noise_by_repeats(const std::vector<Experiment>& experiments, std::size_t 
   return lower_deviation(all, fewest);
 }
 
+/// Rows that are left out, in order, take the value of the nearest one that stays: a sensor that rounds gets no new
+/// values.
+void fill_from_neighbours(Signal& values, const std::vector<std::size_t>& rows) {
+  for (std::size_t i = 0; i < rows.size();) {
+    std::size_t behind = i + 1;
+    while (behind < rows.size() && rows[behind] == rows[behind - 1] + 1) {
+      ++behind;
+    }
+    const std::size_t first = rows[i];
+    const std::size_t last = rows[behind - 1];
+    for (std::size_t k = first; k <= last; ++k) {
+      const bool from_before = last + 1 >= values.size() || (first > 0 && k - first <= last - k);
+      values[k] = from_before ? values[first - 1] : values[last + 1];
+    }
+    i = behind;
+  }
+}
+
+/// Of glitches, which are rows of an output over all records, those of one record.
+std::vector<std::size_t> rows_within(const std::vector<std::size_t>& rows, std::size_t offset, std::size_t size) {
+  std::vector<std::size_t> result;
+  for (const std::size_t row : rows) {
+    if (row >= offset && row < offset + size) {
+      result.push_back(row - offset);
+    }
+  }
+  return result;
+}
+
+NoiseFloor floor_of(const std::vector<Experiment>& experiments, std::size_t output,
+                    const std::vector<std::vector<Signal>>& others, const std::vector<Signal>& unmodelled) {
+  NoiseFloor floor;
+  double range = 0.0;
+  std::vector<double> quanta;
+  double sum = 0.0;
+  double count = 0.0;
+  double off_steps = 0.0;
+  bool on_steps = true;
+  for (const Experiment& experiment : experiments) {
+    const std::vector<double>& values = experiment.measured[output];
+    const double sigma = noise_by_differences(values);
+    sum += sigma * sigma * static_cast<double>(values.size());
+    count += static_cast<double>(values.size());
+    const auto [low, high] = std::ranges::minmax(values);
+    range = std::max(range, high - low);
+    const double before = output < experiment.steps.size() ? experiment.steps[output] : 0.0;
+    quanta.push_back(before > 0.0 ? before : smallest_step(values));
+    const double off = noise_off_steps(values);
+    on_steps = on_steps && off > 0.0;
+    off_steps += off * off * static_cast<double>(values.size());
+  }
+  floor.off_steps = on_steps && count > 0.0 ? std::sqrt(off_steps / count) : 0.0;
+  floor.differences = count > 0.0 ? std::sqrt(sum / count) : 0.0;
+  floor.dwells = noise_by_dwells(experiments, output, others, unmodelled);
+  floor.repeats = noise_by_repeats(experiments, output);
+  // Rounding by a sensor is noise too: a quantum over √12, where the samples show one.
+  const double rounding = quanta.empty() ? 0.0 : rounded_off(*std::ranges::min_element(quanta));
+  const double least = std::max(std::min(rounding, most_rounding * range), 1e-9 * range);
+  // Commands may rest, an enable flag and a reference, while the machine swings free: what goes on so smoothly is no
+  // noise, however slow.
+  if (floor.dwells > policy::smoothest_noise.value * std::max(floor.differences, least)) {
+    floor.dwells = 0.0;
+  }
+  // Differences of a fast signal see such a quantum as noise, too.
+  const bool of_rounding = rounding > most_rounding * range && floor.differences < 1.5 * rounding;
+  floor.value = of_rounding ? least : std::max(floor.differences, least);
+  floor.evidence = "differences";
+  // Differences count a fast signal as noise, and noise that a controller's derivative made fast more than once.
+  constexpr double too_much = 1.15;
+  if (floor.dwells > floor.value || (floor.dwells > least && floor.differences > too_much * floor.dwells)) {
+    floor.value = floor.dwells;
+    floor.evidence = "dwells";
+  }
+  if (floor.off_steps > 0.0 && floor.off_steps < floor.value) {
+    floor.value = floor.off_steps;
+    floor.evidence = "steps";
+  }
+  if (floor.repeats > 0.0) {
+    floor.value = std::max({floor.repeats, floor.differences, least});  // cycles may repeat to the bit
+    floor.evidence = "repeats";
+  }
+  if (!(floor.value > 0.0)) {
+    floor.value = 1.0;
+  }
+  return floor;
+}
+
 }  // namespace
 
 std::size_t input_period(const Experiment& experiment) {
@@ -252,60 +340,23 @@ NoiseRange noise_range(double left) {
 
 NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output,
                        const std::vector<std::vector<Signal>>& others, const std::vector<Signal>& unmodelled) {
-  NoiseFloor floor;
-  double range = 0.0;
-  std::vector<double> quanta;
-  double sum = 0.0;
-  double count = 0.0;
-  double off_steps = 0.0;
-  bool on_steps = true;
-  for (const Experiment& experiment : experiments) {
-    const std::vector<double>& values = experiment.measured[output];
-    const double sigma = noise_by_differences(values);
-    sum += sigma * sigma * static_cast<double>(values.size());
-    count += static_cast<double>(values.size());
-    const auto [low, high] = std::ranges::minmax(values);
-    range = std::max(range, high - low);
-    const double before = output < experiment.steps.size() ? experiment.steps[output] : 0.0;
-    quanta.push_back(before > 0.0 ? before : smallest_step(values));
-    const double off = noise_off_steps(values);
-    on_steps = on_steps && off > 0.0;
-    off_steps += off * off * static_cast<double>(values.size());
+  const std::vector<std::size_t> glitches = find_glitches(experiments, output).rows;
+  if (glitches.empty()) {
+    return floor_of(experiments, output, others, unmodelled);
   }
-  floor.off_steps = on_steps && count > 0.0 ? std::sqrt(off_steps / count) : 0.0;
-  floor.differences = count > 0.0 ? std::sqrt(sum / count) : 0.0;
-  floor.dwells = noise_by_dwells(experiments, output, others, unmodelled);
-  floor.repeats = noise_by_repeats(experiments, output);
-  // Rounding by a sensor is noise too: a quantum over √12, where the samples show one.
-  const double rounding = quanta.empty() ? 0.0 : rounded_off(*std::ranges::min_element(quanta));
-  const double least = std::max(std::min(rounding, most_rounding * range), 1e-9 * range);
-  // Commands may rest, an enable flag and a reference, while the machine swings free: what goes on so smoothly is no
-  // noise, however slow.
-  if (floor.dwells > policy::smoothest_noise.value * std::max(floor.differences, least)) {
-    floor.dwells = 0.0;
+  std::vector<Experiment> without = experiments;
+  std::vector<Signal> unmodelled_without = unmodelled;
+  std::size_t offset = 0;
+  for (std::size_t e = 0; e < without.size(); ++e) {
+    Signal& values = without[e].measured[output];
+    const std::vector<std::size_t> rows = rows_within(glitches, offset, values.size());
+    offset += values.size();
+    fill_from_neighbours(values, rows);
+    if (e < unmodelled_without.size()) {
+      fill_from_neighbours(unmodelled_without[e], rows);
+    }
   }
-  // Differences of a fast signal see such a quantum as noise, too.
-  const bool of_rounding = rounding > most_rounding * range && floor.differences < 1.5 * rounding;
-  floor.value = of_rounding ? least : std::max(floor.differences, least);
-  floor.evidence = "differences";
-  // Differences count a fast signal as noise, and noise that a controller's derivative made fast more than once.
-  constexpr double too_much = 1.15;
-  if (floor.dwells > floor.value || (floor.dwells > least && floor.differences > too_much * floor.dwells)) {
-    floor.value = floor.dwells;
-    floor.evidence = "dwells";
-  }
-  if (floor.off_steps > 0.0 && floor.off_steps < floor.value) {
-    floor.value = floor.off_steps;
-    floor.evidence = "steps";
-  }
-  if (floor.repeats > 0.0) {
-    floor.value = std::max({floor.repeats, floor.differences, least});  // cycles may repeat to the bit
-    floor.evidence = "repeats";
-  }
-  if (!(floor.value > 0.0)) {
-    floor.value = 1.0;
-  }
-  return floor;
+  return floor_of(without, output, others, unmodelled_without);
 }
 
 }  // namespace hysteron::diagnosis

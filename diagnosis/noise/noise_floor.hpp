@@ -12,7 +12,7 @@
 // - steps: where a sensor rounds and noise follows, what lies off the steps. The others count leaps between two steps,
 //   too, so this one goes before differences and dwells.
 // In dwells and repeats a line of one frequency is no noise, and quiet stretches count: in others the machine still
-// moves.
+// moves. Glitches, which no fit sees, are in none of them: one spike of a bad contact would be the noise of all cycles.
 #pragma once
 
 #include <string>

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "diagnosis/model/least_squares.hpp"
 #include "diagnosis/model/task.hpp"
+#include "diagnosis/noise/glitches.hpp"
 
 namespace hysteron::diagnosis {
 
@@ -14,9 +16,14 @@ std::vector<NoiseFloor> noise_floors(Task task, const Program& program,
   std::vector<NoiseFloor> floors;
   {
     const Model model(task, program);
+    const std::vector<Experiment>& experiments = model.problem().experiments;
+    const Index rows = model.rows() / std::ssize(task.outputs);
     for (std::size_t output = 0; output < task.outputs.size(); ++output) {
-      floors.push_back(noise_floor(model.problem().experiments, output, others));
+      floors.push_back(noise_floor(experiments, output, others));
       task.scales.push_back(floors.back().value);
+      for (const std::size_t row : find_glitches(experiments, output).rows) {
+        task.left_out.push_back(static_cast<Index>(output) * rows + static_cast<Index>(row));
+      }
     }
   }
   if (std::ranges::none_of(floors, [](const NoiseFloor& floor) { return floor.evidence == "dwells"; })) {

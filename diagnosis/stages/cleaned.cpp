@@ -18,8 +18,10 @@ namespace hysteron::diagnosis {
 
 Cleaned cleaned(const DiagnosisInput& input, const DiagnosisOptions& options) {
   Cleaned record;
-  std::vector<std::string> unmatched = unmatched_columns(input);
-  record.input = with_inner_signals(input, record.inner);
+  std::vector<std::string> unmatched;
+  const DiagnosisInput named = with_named_drivers(input, unmatched);
+  std::ranges::move(unmatched_columns(named), std::back_inserter(unmatched));
+  record.input = with_inner_signals(named, record.inner);
   record.task = task_of(record.input);
   record.top = record.input.program.graph.name;
   // With the file's values: an effect that it switches on is there already.

@@ -87,7 +87,7 @@ void refuse_foreign_trace(const TraceSettings& settings, const Place& place) {
 
 /// What waits in memory until the trigger fires.
 std::string trigger_text(const TraceTrigger& trigger, const ProgramShape& shape) {
-  const double memory = static_cast<double>(memory_before(trigger, shape.inputs.size(), shape.outputs.size()));
+  const auto memory = static_cast<double>(memory_before(trigger, shape.inputs.size(), shape.outputs.size()));
   return fmt::format("; trace armed for {} capture{}, up to {:.3g} MB in memory", trigger.captures,
                      trigger.captures == 1 ? "" : "s", memory * 1e-6);
 }

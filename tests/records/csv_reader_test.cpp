@@ -71,6 +71,19 @@ TEST(CsvReader, SaysWhatIsWrongWhereAndHowToMendIt) {
             "mend: write a number, such as 1.25e-3, or record the signal again.\n");
 }
 
+/// A few samples that are no numbers can be bridged; of a cut or a dead sensor a line would be invention.
+TEST(CsvReader, SaysWhereResamplingBridgesWhatIsNoNumber) {
+  const auto log = [](int bad) {
+    std::string text = "t,u\n";
+    for (int k = 0; k < 40; ++k) {
+      text += std::to_string(k) + (k >= 10 && k < 10 + bad ? ",nan\n" : ",1\n");
+    }
+    return text;
+  };
+  EXPECT_THAT(refusal_of(log(2)), HasSubstr("It is 2 of 40 rows: --resample linear bridges them"));
+  EXPECT_THAT(refusal_of(log(3)), testing::Not(HasSubstr("--resample")));
+}
+
 struct Refused {
   std::string text;
   std::string beginning;  ///< of the first diagnostic

@@ -40,6 +40,10 @@ TEST(TextFile, SaysWhyItCannotBeRead) {
   EXPECT_EQ(missing.place.file, folder / "palnt.st");
   EXPECT_THAT(missing.cause, HasSubstr("No such file"));
   EXPECT_EQ(missing.mend, "did you mean " + (folder / "plant.st") + "?");
+  // Of another name, it is the file of this kind.
+  folder.write("machine.toml", "");
+  EXPECT_EQ(refusal(folder / "p.toml").mend, "did you mean " + (folder / "machine.toml") + "?");
+  EXPECT_THAT(refusal(folder / "p.csv").mend, HasSubstr("an existing file"));
   EXPECT_THAT(refusal(folder.path().string()).cause, HasSubstr("Is a directory"));
   EXPECT_THAT(refusal(folder / "plant.st/x").cause, HasSubstr("Not a directory"));
   EXPECT_EQ(refusal("").number, error::unreadable_file);

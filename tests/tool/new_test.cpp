@@ -41,6 +41,11 @@ TEST_P(NewFolder, EachCommandOfItsReadmePrintsWhatItSays) {
     }
   }
   EXPECT_EQ(commands, 3U);
+  // The one that a line of its table gives, too.
+  const std::string of_own_log = "hysteron record LOG --for plant.st --params plant.toml";
+  EXPECT_THAT(bench.read("mine/README.md"), HasSubstr("`" + of_own_log + "`"));
+  const auto own = bench.shell("cd mine && LOG=log.csv && " + std::string(of_own_log).replace(16, 3, "$LOG"));
+  EXPECT_EQ(own.code, 0) << own.err;
 }
 
 TEST_P(NewFolder, ItsTextsAreInTheLayoutOfTheHouse) {

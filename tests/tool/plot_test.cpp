@@ -82,6 +82,8 @@ TEST_F(PlotCommand, RefusesWhatItCannotDraw) {
   refuse("hysteron plot log.csv --out x.svg --xy u", "HY730", "--xy U,Y");
   refuse("hysteron plot log.csv --out x.svg --xy u,nothing", "HY502");
   refuse("hysteron plot nowhere.csv --out x.svg", "HY100");
+  bench.write("uneven log.csv", "t,u\n0,1\n1,2\n2,3\n3.4,4\n5,5\n6,6\n");
+  refuse("hysteron plot 'uneven log.csv' --out x.svg", "HY507", "`hysteron record 'uneven log.csv' --picture X.svg`");
   refuse("RSVG_CONVERT=no-such hysteron plot log.csv --out x.png", "HY740", "librsvg2-bin");
   refuse("RSVG_CONVERT=false hysteron plot log.csv --out x.png", "HY741", ".html needs none");
   EXPECT_FALSE(bench.has("x.svg"));

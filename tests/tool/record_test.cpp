@@ -89,6 +89,23 @@ TEST(RecordCommand, UnevenTimesAreShownBeforeTheyAreRefused) {
   EXPECT_EQ(whole.at("gaps"), 0);
 }
 
+/// A stamp that came late or early leaves a long step and a short one, and no row is missing.
+TEST(RecordCommand, AStrayStampIsNoGap) {
+  const test::Workbench bench;
+  std::string log = "t,u\n";
+  for (int k = 0; k < 60; ++k) {
+    const double off = k == 20 ? -0.0006 : k == 40 ? 0.0006 : k == 58 ? -0.0006 : 0.0;
+    if (k != 30) {
+      log += fmt::format("{:.4f},{}\n", 0.001 * k + off, k % 7);
+    }
+  }
+  bench.write("log.csv", log);
+  const auto json = nlohmann::json::parse(bench.shell("hysteron record log.csv --json").out);
+  EXPECT_EQ(json.at("gaps"), 1) << "that of row 30";
+  EXPECT_EQ(json.at("missing_rows"), 1);
+  EXPECT_THAT(bench.shell("hysteron record log.csv").out, HasSubstr("the first is behind row 30"));
+}
+
 TEST(RecordCommand, SaysWhetherARecordExcitesWhatIsToBeFitted) {
   const test::Workbench bench;
   bench.write("p.st", plant);

@@ -170,6 +170,16 @@ TEST_F(Tune, WhatIsNotInTheModelLeadsToDiagnose) {
   EXPECT_THAT(bench.read("report/report.html"),
               AllOf(HasSubstr("Something is not in the model"), HasSubstr("Y over U")));
   EXPECT_EQ(bench.shell(command).code, 0);
+  // Of the improved diagram likewise: its own folder would be overwritten.
+  ASSERT_EQ(bench.shell("cp p.st diagnosis/improved.st && cp p.toml diagnosis/improved.toml").code, 0);
+  const auto again = bench.shell(
+      "hysteron tune diagnosis/improved.st --log 'a log.csv' --column U=2 --params diagnosis/improved.toml --out "
+      "final.toml");
+  EXPECT_EQ(again.code, 0) << again.err;
+  const std::string next =
+      "hysteron diagnose diagnosis/improved.st --log 'a log.csv' --params final.toml --out diagnosis2 --column U=2";
+  EXPECT_THAT(again.out, HasSubstr("  " + next + "\n"));
+  EXPECT_EQ(bench.shell(next).code, 0);
 }
 
 /// At the start of one parameter, the RMSE of the page is that of a fit without it, where the model is linear in it.

@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "diagnosis/findings/left_out_findings.hpp"
 #include "diagnosis/findings/shares.hpp"
+#include "diagnosis/model/least_squares.hpp"
+#include "diagnosis/model/task.hpp"
 #include "tests/diagnosis/simulated_machine.hpp"
 
 namespace hysteron::diagnosis {
@@ -75,6 +78,37 @@ TEST(Rivals, LeaveWhatTheyLeaveOfTheOutputWithTheGap) {
   set.fit.residuals.tail(2).setConstant(2.0);
   EXPECT_DOUBLE_EQ(rival_of(task, 0, {.explanation = &set}).improved_rms, 1.0);
   EXPECT_DOUBLE_EQ(rival_of(task, 1, {.explanation = &set}).improved_rms, 20.0);
+}
+
+/// An unknown that was proposed has the unit of its block, 'x: what is told has that of the edge, or none.
+TEST(EffectFindings, AParameterIsInTheUnitThatTheWiresGive) {
+  for (const bool is_known : {true, false}) {
+    std::string text = test::stack({"HY_LOAD := (SIZE := 2.0, T_ON := 1.0)", "HYST.XOUT"});
+    for (const std::string unit : {"(* @unit V *)", "(* @unit um *)"}) {
+      text.erase(is_known ? text.size() : text.find(unit), is_known ? 0 : unit.size());
+    }
+    const auto program = std::make_shared<const Program>(test::program_of(text));
+    const records::Record log = test::measured(*program, test::record_of("U", test::rich_voltage()), 0.01);
+    Task task = task_of(test::input_of(text, "[fit.AMP]\nT1 = {}\n", {log}));
+    task.scales = {0.01};
+    Explanation chosen{.variant = {.text = text, .program = program}};
+    chosen.variant.effects = {{.effect = "load",
+                               .edge = "HYST.XOUT",
+                               .instance = "E",
+                               .parameters = {{.name = "SIZE"}},
+                               .paths = {"E.SIZE"}}};
+    chosen.variant.further = {{.path = "E.SIZE", .unit = "'x", .start = 2.0, .lower = -10.0, .upper = 10.0}};
+    Model model(task, *program, chosen.variant.further);
+    chosen.fit = fit(model, model.start());
+    Search search;
+    search.calibrated = chosen;
+    const Judgement judgement{.chosen = &chosen, .effective_samples = 2000.0};
+    const auto found =
+        effect_findings({.task = task, .search = search, .judgement = judgement, .kept = search.calibrated});
+    ASSERT_EQ(found.size(), 1U);
+    ASSERT_EQ(found[0].parameters.size(), 1U);
+    EXPECT_EQ(found[0].parameters[0].unit, is_known ? "um" : "");
+  }
 }
 
 TEST(Shares, WithAnEffectOutsideOfTheGapTheyAreOfBoth) {

@@ -66,11 +66,37 @@ TEST(InnerSignals, AColumnThatCutsNowhereIsRemarked) {
   const auto remarks = [](const std::string& column) {
     return unmatched_columns(test::input_of(test::stack(), test::stack_parameters, {log_of({}, column)}));
   };
-  EXPECT_THAT(remarks("AMP.OUT"), ElementsAre(testing::AllOf(HasSubstr("AMP.OUT is no signal of STACK"),
-                                                             HasSubstr("did you mean AMP.XOUT?"))));
-  EXPECT_THAT(remarks("PUMP.FLOW"), ElementsAre(HasSubstr("PUMP.FLOW is no signal of STACK and is left aside.")));
+  EXPECT_THAT(remarks("AMP.OUT"),
+              ElementsAre(testing::AllOf(HasSubstr("AMP.OUT is no signal of STACK"),
+                                         HasSubstr("did you mean AMP.XOUT?"), HasSubstr("--column AMP_OUT=AMP.OUT."))));
   EXPECT_THAT(remarks("amp.xout"), IsEmpty());
   EXPECT_THAT(remarks("TEMPERATURE"), IsEmpty()) << "it may be a disturbance";
+}
+
+/// A tag of a PLC is a driver by a name of the language, and `improved.toml` says which column that is.
+TEST(InnerSignals, ATagOfAPlcDrives) {
+  DiagnosisInput input = test::input_of(test::axis(), test::axis_parameters, {test::warm_sensor()});
+  records::Record log = records::Record::even(0.0, 0.005, 2000);
+  for (records::Column column : input.records.front().columns()) {
+    column.name = column.name == "temp" ? "Hall[1].Temp" : column.name;
+    log.add(std::move(column));
+  }
+  log.add({.name = "HALL_1_TEMP", .values = std::vector<double>(2000, 1.0)});
+  log.add({.name = "Hall.Off", .values = std::vector<double>(2000, 1.0)});
+  log.add({.name = "Speed.Act", .values = test::rich_voltage()});
+  input.records = {log};
+  std::vector<std::string> remarks;
+  const DiagnosisInput named = with_named_drivers(input, remarks);
+  EXPECT_THAT(remarks, ElementsAre(HasSubstr("--column HALL_1_TEMP_2=Hall[1].Temp.")));
+  EXPECT_NE(named.records.front().find("SPEED.ACT"), nullptr) << "a signal of SPEED it claims to be";
+  EXPECT_NE(named.records.front().find("Hall.Off"), nullptr) << "it moves nothing";
+  const Diagnosis found = diagnose(input, {.effects = {"cross_coupling"}});
+  ASSERT_EQ(found.effects.size(), 1U);
+  EXPECT_THAT(found.effects.front().drivers, ElementsAre("HALL_1_TEMP_2"));
+  EXPECT_THAT(found.improved_text, HasSubstr("HALL_1_TEMP_2"));
+  ASSERT_EQ(found.improved_file.record.columns.size(), 1U);
+  EXPECT_EQ(found.improved_file.record.columns.front().key, "HALL_1_TEMP_2");
+  EXPECT_EQ(found.improved_file.record.columns.front().value.text, "Hall[1].Temp");
 }
 
 TEST(InnerSignals, JoinTheOutputsThatTheParameterFileLists) {

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/diagnosis/simulated_machine.hpp"
@@ -293,6 +295,36 @@ TEST(NoiseRange, HoldsTheFloorAndWhatSlowNoiseMayHide) {
     EXPECT_LT(range.high, 1.6) << "a large remainder is no noise";
   }
   EXPECT_GT(noise_range(1.2).high, 1.2);
+}
+
+/// What no fit sees is in no floor: of repeats, of dwells, of differences, of what lies off a sensor's steps.
+TEST(NoiseFloor, ASpikeOfAnySizeIsInNone) {
+  const auto sine = [](double t) { return std::sin(test::two_pi * 0.5 * t); };
+  const auto settling = [](double t) { return 10.0 * treads(t / 2.0); };
+  const auto white = test::Noise(11).white(8000, 0.2);
+  auto rounded = sum(over_time(8000, slow_sine), test::Noise(3).white(8000, 0.3));
+  for (double& value : rounded) {
+    value = std::round(value);
+  }
+  const std::vector<std::pair<std::string, std::vector<Experiment>>> records{
+      {"repeats", experiment(over_time(8000, sine), sum(over_time(8000, slow_sine), white))},
+      {"dwells", experiment(over_time(8000, [](double t) { return treads(t / 2.0); }),
+                            sum(over_time(8000, settling), slow_noise(8000, 0.2)))},
+      {"differences", experiment(over_time(8000, chirp), sum(over_time(8000, slow_sine), white))},
+      {"differences", experiment(over_time(8000, chirp), rounded)}};
+  for (const auto& [evidence, clean] : records) {
+    const NoiseFloor before = noise_floor(clean, 0);
+    EXPECT_EQ(before.evidence, evidence);
+    for (const double size : {30.0, 1e4, -1e9}) {
+      auto struck = clean;
+      struck.front().measured.front()[4321] += size;
+      struck.front().measured.front()[4322] += size;
+      struck.front().measured.front()[7000] -= size;
+      const NoiseFloor floor = noise_floor(struck, 0);
+      EXPECT_EQ(floor.evidence, evidence) << size;
+      EXPECT_NEAR(floor.value, before.value, 0.02 * before.value) << evidence << ", " << size;
+    }
+  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "diagnosis/faults/glitches.hpp"
+#include "diagnosis/noise/glitches.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Glitches: samples that were put there are found, and nothing else is.
-#include "diagnosis/faults/glitches.hpp"
+#include "diagnosis/noise/glitches.hpp"
 
 #include <gmock/gmock.h>
 

@@ -28,9 +28,9 @@ Reach range_of(const std::vector<PlottedLine>& lines, std::vector<double> Polyli
 
 /// From the data of a panel to pixels.
 struct Scale {
-  Reach data;
-  double begin;
-  double end;
+  Reach data{};
+  double begin = 0.0;
+  double end = 0.0;
 
   [[nodiscard]] double operator()(double value) const {
     return begin + (value - data.low) / (data.high - data.low) * (end - begin);

@@ -65,7 +65,7 @@ void XmlEdit::add_children(std::size_t name_at, const std::vector<std::string>& 
   const std::string indent = indent_of(name_at);
   std::string lines;
   for (const std::string& child : children) {
-    lines += "\n" + indent + "  " + child;
+    lines.append("\n").append(indent).append("  ").append(child);
   }
   if (tag.is_empty) {
     const std::size_t slash = text_.find('/', tag.end);

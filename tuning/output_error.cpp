@@ -339,8 +339,9 @@ class Fitter {
         const Signal& measured = problem_.experiments[e].measured[output];
         const auto [low, high] = std::ranges::minmax(measured);
         const double reach = runaway * std::max(high - low, scale);
-        is_bounded = is_bounded && std::ranges::all_of(fit_.model[e][output],
-                                                       [&](double y) { return low - reach < y && y < high + reach; });
+        is_bounded = is_bounded && std::ranges::all_of(fit_.model[e][output], [&, &low = low, &high = high](double y) {
+                       return low - reach < y && y < high + reach;
+                     });
       }
     }
     if (!is_bounded) {

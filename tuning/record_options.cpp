@@ -112,13 +112,13 @@ void take_range(const RecordOptions& options, records::ReadOptions& result) {
 RecordOptions with_settings(RecordOptions options, const parameters::RecordSettings& settings) {
   const auto texts = texts_of(options);
   for (const auto& [key, value] : settings.settings) {
-    const auto* const found = std::ranges::find_if(texts, [&](const auto& text) { return text.first == key; });
+    const auto* const found = std::ranges::find_if(texts, [&key = key](const auto& text) { return text.first == key; });
     if (found != texts.end() && found->second->empty()) {
       *found->second = value.text;
     }
   }
   for (const auto& [name, value] : settings.columns) {
-    const auto is_given = [&](const std::string& one) {
+    const auto is_given = [&name = name](const std::string& one) {
       return equal_ignoring_case(trimmed(std::string_view(one).substr(0, one.find('='))), name);
     };
     if (std::ranges::none_of(options.columns, is_given)) {

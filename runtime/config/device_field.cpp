@@ -16,8 +16,8 @@ using modbus::RemoteReading;
 using std::chrono::nanoseconds;
 
 struct DeviceCount {
-  const char* name;
-  const char* meaning;
+  const char* name = "";
+  const char* meaning = "";
   std::uint64_t DeviceStatus::*count = nullptr;  ///< none: the state of the link
 };
 

@@ -259,6 +259,7 @@ void look_up_hosts(RunConfig& config, std::chrono::milliseconds patience) {
     }
   }
   std::vector<std::string> hosts;
+  hosts.reserve(links.size());
   for (const auto& [host, of_host] : links) {
     hosts.push_back(host);
   }

@@ -177,7 +177,7 @@ class Reader {
   /// such name, or where a key can be of one element alone.
   std::vector<std::size_t> ports_of(const toml::key& key, const toml::table& node, std::string_view kind,
                                     const std::vector<ProgramSignal>& signals) {
-    const auto indices = indices_of(key.str(), signals);
+    auto indices = indices_of(key.str(), signals);
     if (indices.empty()) {
       const auto names = names_of(signals);
       const auto near = nearest_name(key.str(), names);

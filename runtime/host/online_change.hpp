@@ -69,13 +69,13 @@ class OnlineChange {
   /// Changes to another version of the diagram, as it begins. Throws InputError as require_sound, HY851 where an output
   /// would jump, HY853 where it cannot be now or its step takes too much of the period, HY855 where parameters do not
   /// go together. Then the running version goes on as if nothing had been.
-  ChangeReport change_to(std::unique_ptr<StepProgram> next, const ChangeWish& wish);
+  ChangeReport change_to(std::unique_ptr<StepProgram> program, const ChangeWish& asked);
   /// The report of a change to what runs already: nothing is done, and the way back stays.
   [[nodiscard]] ChangeReport nothing_to_change() const;
   /// Changes back to the version before. What it has of its own goes on as it was when it was changed; all that both
   /// have is carried back, but for parameters that were taken as given and that nobody has changed since: they are as
   /// before. A second time is forward again. Throws as change_to, HY853 too where there is none.
-  ChangeReport change_back(const ChangeWish& wish);
+  ChangeReport change_back(const ChangeWish& asked);
   /// Says in task.shortages whether there is no socket yet on which a change may be asked for.
   void cannot_be_asked_for(bool now) noexcept { task_->door().shortage(Shortage::change, now); }
   /// Says on standard error, and in task.online_change, that a change was refused: here, or before it came here.

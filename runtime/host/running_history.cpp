@@ -63,6 +63,7 @@ BesideClocks clocks_beside(PointDoor& door) {
 
 std::vector<std::size_t> points_named(const std::vector<std::string>& names, std::span<const Point> points) {
   std::vector<std::size_t> result;
+  result.reserve(names.size());
   for (const std::string& name : names) {
     result.push_back(index_of_point(points, name));
   }

@@ -47,9 +47,9 @@ struct CarriedValues {
 };
 
 /// Of what was not taken over: whether it is there for want of another of its name, and not for its kind or value.
-[[nodiscard]] bool is_new(std::string_view left);
+[[nodiscard]] bool is_new(std::string_view one);
 /// Its name: LAG.Y of "LAG.Y (um there, mm here)".
-[[nodiscard]] std::string without_reason(std::string_view left);
+[[nodiscard]] std::string without_reason(std::string_view one);
 
 /// What a layout and the program both have by one name, and in other units: "AMP.K is in V/mm there, V/um here". Empty
 /// where there is none. `inputs`: those that are to be retained. Bytes of one diagram mean something else then.

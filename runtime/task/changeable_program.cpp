@@ -55,7 +55,7 @@ Bump bump_of(double before, double after, const BumpLimit& limit) noexcept {
 ChangeableProgram::ChangeableProgram(std::unique_ptr<StepProgram> first)
     : shape_(first->shape()), parameters_(shape_.parameters), values_(parameters_of(*first)) {
   owned_.push_back(std::make_unique<ProgramVersion>(std::move(first), shape_, parameters_));
-  running_ = owned_.front().get();
+  running_ = owned_.front().get();  // NOLINT(cppcoreguidelines-prefer-member-initializer): once it is owned
 }
 
 void ChangeableProgram::step(std::span<const double> inputs, std::span<double> outputs) noexcept {

@@ -73,6 +73,7 @@ class RetainFolder final : public RetainFiles {
   explicit RetainFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
   RetainFolder(const RetainFolder&) = delete;
   RetainFolder& operator=(const RetainFolder&) = delete;
+  ~RetainFolder() override = default;
   /// Makes the folder where it is missing, and holds it against a second task for as long as this lives. Where the disk
   /// has no room for it, it is made and held by the first state that finds some. Throws
   /// std::system_error where it cannot be written to; std::errc::resource_unavailable_try_again where another task

@@ -7,10 +7,10 @@ namespace hysteron::runtime {
 namespace {
 
 struct Status {
-  const char* name;
-  PointType type;
-  const char* unit;
-  const char* meaning;
+  const char* name = "";
+  PointType type = PointType::real64;
+  const char* unit = "";
+  const char* meaning = "";
   bool counts = false;
   bool comes_last = false;
 };
@@ -102,6 +102,7 @@ std::span<const char* const> status_names() {
 
 std::vector<Point> status_points() {
   std::vector<Point> points;
+  points.reserve(std::size(statuses));
   for (const Status& status : statuses) {
     points.push_back({.name = status.name,
                       .kind = PointKind::status,

@@ -337,7 +337,7 @@ class GoalSearch {
                                                             .excess = best_.excess});
       return !cancelled_ && !(is_feasibility_ && best_.excess <= 0.0);
     };
-    const ConstrainedResult ended = solve(problem, options);
+    ConstrainedResult ended = solve(problem, options);
     if (is_feasibility_) {
       keep_shares(ended.multipliers);
     }

@@ -19,7 +19,7 @@ Margin slowness(const LoopResponse& response, std::size_t watched) {
   const Signal& h = response.impulse;
   const auto size = [](double value) { return std::fabs(value); };
   const auto quarter = std::ssize(h) / 4;
-  const Margin far{.value = -1.0, .by = Eigen::VectorXd::Zero(response.impulse_by.cols())};
+  Margin far{.value = -1.0, .by = Eigen::VectorXd::Zero(response.impulse_by.cols())};
   if (h.size() < watched / 8 || quarter == 0) {
     return far;
   }

@@ -58,11 +58,9 @@ struct alignas(32) LaneBools {
 #ifdef __AVX__
     return __builtin_ia32_movmskpd256(detail::LaneNumbers(four));
 #else  // code that only passes lanes on
-    std::array<std::int64_t, 4> all{};
-    __builtin_memcpy(all.data(), &four, sizeof(all));
     int result = 0;
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      result |= (all[k] < 0 ? 1 : 0) << k;
+    for (std::size_t k = 0; k < 4; ++k) {
+      result |= (four[k] < 0 ? 1 : 0) << k;
     }
     return result;
 #endif

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <sqlite3.h>
-#include <sys/stat.h>
 
 #include <cmath>
 #include <limits>
@@ -76,11 +75,6 @@ std::string put_aside(const std::filesystem::path& path) {
     }
     return aside.string();
   }
-}
-
-std::uint64_t inode_of(const std::filesystem::path& path) {
-  struct stat status {};
-  return ::stat(path.c_str(), &status) == 0 ? status.st_ino : 0;
 }
 
 Database::Database(const std::filesystem::path& path, Mode mode) : name_(path.string()) {

@@ -40,9 +40,6 @@ class Statement;
 /// Renames a file with its log, to the first name that is free, NAME.aside1, and gives that. Throws DatabaseError.
 [[nodiscard]] std::string put_aside(const std::filesystem::path& path);
 
-/// By which a file is known again under its name; 0 where there is none. Another one there has another.
-[[nodiscard]] std::uint64_t inode_of(const std::filesystem::path& path);
-
 /// An open file. One thread at a time uses it; several processes may open the same file.
 class Database {
  public:

@@ -69,15 +69,6 @@ bool connect_to(const Descriptor& socket, const sockaddr_un& address) {
   return ::connect(socket.number(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
 }
 
-/// Nothing where none is there.
-std::optional<FileIdentity> file_at(const std::string& path) {
-  struct stat found {};
-  if (::lstat(path.c_str(), &found) != 0) {
-    return {};
-  }
-  return FileIdentity{.device = found.st_dev, .number = found.st_ino};
-}
-
 bool is_own_user(const Descriptor& peer) {
   ucred who{};
   socklen_t size = sizeof(who);
@@ -217,7 +208,7 @@ int ChangeListener::listen() {
       ::listen(socket_.number(), 4) != 0) {
     return errno;
   }
-  named_ = file_at(path_);
+  named_ = file_named(path_);
   return 0;
 }
 
@@ -247,7 +238,7 @@ ChangeListener::~ChangeListener() {
   const std::uint64_t one = 1;
   [[maybe_unused]] const ssize_t written = ::write(end_.number(), &one, sizeof(one));
   thread_.join();
-  if (listens_ && file_at(path_) == named_) {  // the name may be another task's by now
+  if (listens_ && file_named(path_) == named_) {  // the name may be another task's by now
     (void)::unlink(path_.c_str());
   }
 }
@@ -280,7 +271,7 @@ void ChangeListener::serve() {
 
 /// A name that somebody deleted, as a clean-up of old files does, is made anew.
 void ChangeListener::look_after_name() {
-  if (file_at(path_)) {
+  if (file_named(path_)) {
     return;
   }
   socket_ = new_private_socket();  // a socket can be given a name once

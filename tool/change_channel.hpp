@@ -5,8 +5,6 @@
 // answer; before it there may be lines that tell what is being done: {"progress": "compiles the new version"}.
 #pragma once
 
-#include <sys/types.h>
-
 #include <functional>
 #include <optional>
 #include <string>
@@ -15,16 +13,9 @@
 
 #include "support/descriptor.hpp"
 #include "support/diagnostic.hpp"
+#include "support/file_identity.hpp"
 
 namespace hysteron::tool {
-
-/// Which file a name stands for.
-struct FileIdentity {
-  dev_t device = 0;
-  ino_t number = 0;
-
-  bool operator==(const FileIdentity&) const = default;
-};
 
 /// The task's side; requests are answered one after the other, in a thread of their own.
 class ChangeListener {
@@ -36,8 +27,7 @@ class ChangeListener {
   using Missing = std::function<void(bool)>;
 
   /// A socket of a task that is gone is replaced. Where the disk takes none now, or somebody deletes it, it is tried
-  /// again. Throws InputError
-  /// at `place`: HY815 where another task listens there, HY854 where there can be no socket.
+  /// again. Throws InputError at `place`: HY815 where another task listens there, HY854 where there can be no socket.
   ChangeListener(const std::string& path, const Place& place, Answer answer, Missing missing = {});
   /// Waits for the answer that is being made.
   ~ChangeListener();

@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "diagnosis/faults/decays.hpp"
-#include "diagnosis/noise/glitches.hpp"
 #include "diagnosis/model/least_squares.hpp"
 #include "diagnosis/model/parallel.hpp"
 #include "diagnosis/model/task.hpp"
+#include "diagnosis/noise/glitches.hpp"
 #include "support/median.hpp"
 
 namespace hysteron::diagnosis {

@@ -340,7 +340,12 @@ NoiseRange noise_range(double left) {
 
 NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output,
                        const std::vector<std::vector<Signal>>& others, const std::vector<Signal>& unmodelled) {
-  const std::vector<std::size_t> glitches = find_glitches(experiments, output).rows;
+  return noise_floor_without(find_glitches(experiments, output).rows, experiments, output, others, unmodelled);
+}
+
+NoiseFloor noise_floor_without(const std::vector<std::size_t>& glitches, const std::vector<Experiment>& experiments,
+                               std::size_t output, const std::vector<std::vector<Signal>>& others,
+                               const std::vector<Signal>& unmodelled) {
   if (glitches.empty()) {
     return floor_of(experiments, output, others, unmodelled);
   }

@@ -44,6 +44,11 @@ struct NoiseFloor {
 [[nodiscard]] NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output,
                                      const std::vector<std::vector<Signal>>& others = {},
                                      const std::vector<Signal>& unmodelled = {});
+/// The same where the glitches of the output are known, as find_glitches() gives their rows.
+[[nodiscard]] NoiseFloor noise_floor_without(const std::vector<std::size_t>& glitches,
+                                             const std::vector<Experiment>& experiments, std::size_t output,
+                                             const std::vector<std::vector<Signal>>& others,
+                                             const std::vector<Signal>& unmodelled = {});
 
 /// The RMS by which a gap stands out of the floor at least, as √(rms² − floor²), in the unit of the output. More where
 /// the floor does not come from repeats: what else there is may have missed slow noise.

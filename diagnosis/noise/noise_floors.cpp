@@ -14,14 +14,16 @@ std::vector<NoiseFloor> noise_floors(Task task, const Program& program,
                                      const std::vector<std::vector<Signal>>& others) {
   task.scales.clear();
   std::vector<NoiseFloor> floors;
+  std::vector<std::vector<std::size_t>> glitches;  // by output
   {
     const Model model(task, program);
     const std::vector<Experiment>& experiments = model.problem().experiments;
     const Index rows = model.rows() / std::ssize(task.outputs);
     for (std::size_t output = 0; output < task.outputs.size(); ++output) {
-      floors.push_back(noise_floor(experiments, output, others));
+      glitches.push_back(find_glitches(experiments, output).rows);
+      floors.push_back(noise_floor_without(glitches.back(), experiments, output, others));
       task.scales.push_back(floors.back().value);
-      for (const std::size_t row : find_glitches(experiments, output).rows) {
+      for (const std::size_t row : glitches.back()) {
         task.left_out.push_back(static_cast<Index>(output) * rows + static_cast<Index>(row));
       }
     }
@@ -38,7 +40,8 @@ std::vector<NoiseFloor> noise_floors(Task task, const Program& program,
   const std::vector<Experiment>& experiments = model.problem().experiments;
   for (std::size_t output = 0; output < floors.size(); ++output) {
     if (floors[output].evidence == "dwells") {
-      floors[output] = noise_floor(experiments, output, others, by_record(task, calibrated.residuals, output));
+      floors[output] = noise_floor_without(glitches[output], experiments, output, others,
+                                           by_record(task, calibrated.residuals, output));
     }
   }
   return floors;

@@ -73,7 +73,7 @@ HistoryFile::HistoryFile(const HistoryPlan& plan, bool anew) : path_(plan.file),
     make_history_tables(*database_);
   }
   begin_run(plan);
-  inode_ = database::inode_of(path_);
+  identity_ = file_behind(path_);
 }
 
 void HistoryFile::begin_run(const HistoryPlan& plan) {
@@ -149,7 +149,7 @@ std::string HistoryFile::column_of(const Point& point) {
 }
 
 bool HistoryFile::is_there() const {
-  return inode_ != 0 && database::inode_of(path_) == inode_;
+  return identity_ && file_behind(path_) == identity_;
 }
 
 std::uint64_t HistoryFile::size() const {

@@ -13,6 +13,7 @@
 #include "runtime/point.hpp"
 #include "runtime/task/sample_tap.hpp"
 #include "support/descriptor.hpp"
+#include "support/file_identity.hpp"
 
 namespace hysteron::runtime {
 
@@ -73,7 +74,7 @@ class HistoryFile {
   std::optional<database::Database> database_{};
   std::optional<database::Statement> insert_{};
   std::int64_t run_ = 0;
-  std::uint64_t inode_ = 0;
+  std::optional<FileIdentity> identity_{};
 };
 
 }  // namespace hysteron::runtime

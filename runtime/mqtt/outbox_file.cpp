@@ -141,11 +141,11 @@ OutboxFile::OutboxFile(const std::filesystem::path& file, const std::vector<std:
     open(file);
     read(file, points, owner);
   }
-  inode_ = database::inode_of(path_);
+  identity_ = file_behind(path_);
 }
 
 bool OutboxFile::is_there() const {
-  return inode_ != 0 && database::inode_of(path_) == inode_;
+  return identity_ && file_behind(path_) == identity_;
 }
 
 void OutboxFile::open(const std::filesystem::path& file) {

@@ -12,6 +12,7 @@
 
 #include "database/sqlite.hpp"
 #include "runtime/mqtt/row.hpp"
+#include "support/file_identity.hpp"
 
 namespace hysteron::runtime {
 
@@ -51,7 +52,7 @@ class OutboxFile {
   void insert(std::uint64_t number, const MqttRow& row);
 
   std::filesystem::path path_;
-  std::uint64_t inode_ = 0;
+  std::optional<FileIdentity> identity_{};
   std::string aside_;
   std::vector<MqttRow> rows_{};
   std::uint64_t first_ = 0;

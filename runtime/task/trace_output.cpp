@@ -17,6 +17,7 @@
 
 #include "runtime/task/trace_file.hpp"
 #include "support/atomic_file.hpp"
+#include "support/file_identity.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -26,7 +27,6 @@ int open_locked(const std::filesystem::path& file, struct stat& about) {
   for (;;) {
     // Without waiting: a pipe has no end for writing until somebody reads it.
     const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
-    struct stat now {};
     if (descriptor < 0 || ::fstat(descriptor, &about) != 0) {
       return descriptor;
     }
@@ -41,8 +41,7 @@ int open_locked(const std::filesystem::path& file, struct stat& about) {
       errno = reason;
       return -1;
     }
-    if (::stat(file.c_str(), &now) == 0 && now.st_ino == about.st_ino && now.st_dev == about.st_dev &&
-        ::fstat(descriptor, &about) == 0) {
+    if (file_behind(file) == identity_of(about) && ::fstat(descriptor, &about) == 0) {
       return descriptor;
     }
     (void)::close(descriptor);
@@ -163,9 +162,8 @@ bool TraceOutput::begin_next() {
 
 bool TraceOutput::is_taken_away() const {
   struct stat mine {};
-  struct stat named {};
-  return ::fstat(descriptor_, &mine) != 0 || ::stat(file_.c_str(), &named) != 0 || mine.st_ino != named.st_ino ||
-         mine.st_dev != named.st_dev || static_cast<std::uint64_t>(mine.st_size) < size_;
+  return ::fstat(descriptor_, &mine) != 0 || file_behind(file_) != identity_of(mine) ||
+         static_cast<std::uint64_t>(mine.st_size) < size_;
 }
 
 TraceOutput::~TraceOutput() {

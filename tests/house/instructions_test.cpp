@@ -32,7 +32,7 @@ constexpr Budget budgets[] = {
     {"rollout", 1e4, 794},           // a sample of a lag, a play, a resonance and a creep
     {"derivatives", 1e4, 5'670},     // the same, with the derivatives by six parameters
     {"output_error", 4, 14.45e6},    // an iteration of a fit of six parameters to 1000 samples, start and end included
-    {"diagnosis", 1, 2.172e9},       // 500 samples, two effects at each edge; glitches are sought for each floor, too
+    {"diagnosis", 1, 2.134e9},       // 500 samples, two effects at each edge; glitches are sought for the floors, too
     {"static_fit", 1, 547'000},      // a fit of 200 points
 };
 

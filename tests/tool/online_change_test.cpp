@@ -73,6 +73,15 @@ std::string stage(bool has_limiter, const std::string& gain = "0.25") {
                      has_limiter ? "  TOP(XIN := LAG.XOUT);\n  U := TOP.XOUT;\n" : "  U := LAG.XOUT;\n");
 }
 
+/// A folder with the stage and its run file.
+class StageBench : public test::Workbench {
+ public:
+  StageBench() {
+    write("stage.st", stage(false));
+    write("run.toml", online_run_file);
+  }
+};
+
 /// A task of its own process in the folder of the bench.
 class Served {
  public:
@@ -118,9 +127,7 @@ std::uint64_t replayed(const test::Workbench& bench, const std::string& trace, c
 /// There, back, and there again; the trace of each version is replayed to the bit, and no cycle is missing in them.
 TEST(OnlineChangeCommand, ChangesAndChangesBackByBothEngines) {
   for (const auto engine : {tool::Engine::interpreter, tool::Engine::compiled}) {
-    const test::Workbench bench;
-    bench.write("stage.st", stage(false));
-    bench.write("run.toml", online_run_file);
+    const StageBench bench;
     Served task(bench, engine == tool::Engine::compiled ? "--engine compiled" : "--engine interpreter");
     ASSERT_TRUE(task.has_begun()) << task.told();
     EXPECT_THAT(task.said(), HasSubstr("; online change on online-change.socket; "));
@@ -154,13 +161,9 @@ TEST(OnlineChangeCommand, ChangesAndChangesBackByBothEngines) {
   }
 }
 
-/// SIGKILL as soon as the change is told: the next start runs the new version with what was carried, though values are
-/// retained by themselves once an hour only.
 /// The same files a second time would be a version of their own, and the way back would lead to the same text.
 TEST(OnlineChangeCommand, FilesThatRunAlreadyLeaveVersionAndWayBack) {
-  const test::Workbench bench;
-  bench.write("stage.st", stage(false));
-  bench.write("run.toml", online_run_file);
+  const StageBench bench;
   Served task(bench, "--engine interpreter");
   ASSERT_TRUE(task.has_begun()) << task.told();
   bench.write("stage.st", stage(true));
@@ -182,10 +185,10 @@ TEST(OnlineChangeCommand, FilesThatRunAlreadyLeaveVersionAndWayBack) {
   EXPECT_EQ(bench.read("stage.st"), stage(true));
 }
 
+/// SIGKILL as soon as the change is told: the next start runs the new version with what was carried, though values are
+/// retained by themselves once an hour only.
 TEST(OnlineChangeCommand, ACrashJustAfterItLosesNothing) {
-  const test::Workbench bench;
-  bench.write("stage.st", stage(false));
-  bench.write("run.toml", online_run_file);
+  const StageBench bench;
   Served task(bench, "--engine interpreter");
   ASSERT_TRUE(task.has_begun()) << task.told();
   bench.write("stage.st", stage(true, "0.3"));
@@ -208,9 +211,7 @@ TEST(OnlineChangeCommand, ACrashJustAfterItLosesNothing) {
 
 /// A clean-up of old files may delete the name while the task runs; a file that is there by then stays.
 TEST(OnlineChangeCommand, ADeletedSocketComesBack) {
-  const test::Workbench bench;
-  bench.write("stage.st", stage(false));
-  bench.write("run.toml", online_run_file);
+  const StageBench bench;
   Served task(bench, "--engine interpreter");
   ASSERT_TRUE(task.has_begun()) << task.told();
   std::filesystem::remove(bench.path() / "online-change.socket");
@@ -226,9 +227,7 @@ TEST(OnlineChangeCommand, ADeletedSocketComesBack) {
 
 /// What is refused leaves the task, its version and the files as they are.
 TEST(OnlineChangeCommand, WhatIsRefusedChangesNothing) {
-  const test::Workbench bench;
-  bench.write("stage.st", stage(false));
-  bench.write("run.toml", online_run_file);
+  const StageBench bench;
   Served task(bench, "--engine interpreter");
   ASSERT_TRUE(task.has_begun()) << task.told();
   bench.write("stage.st", "FUNCTION_BLOCK STAGE\n  VAR_OUTPUT U : LREAL; END_VAR\n  U := 1.0\nEND_FUNCTION_BLOCK\n");
@@ -256,9 +255,7 @@ TEST(OnlineChangeCommand, WhatIsRefusedChangesNothing) {
 
 /// What a restart would be refused with refuses the change: a restart has to come up with the version that runs.
 TEST(OnlineChangeCommand, ARunFileThatCouldNotStartTheNewVersionRefusesIt) {
-  const test::Workbench bench;
-  bench.write("stage.st", stage(false));
-  bench.write("run.toml", online_run_file);
+  const StageBench bench;
   Served task(bench, "--engine interpreter");
   ASSERT_TRUE(task.has_begun()) << task.told();
   EXPECT_THAT(bench.shell("hysteron online-change run.toml --check").out, Not(HasSubstr("run file was edited")));
@@ -282,9 +279,7 @@ TEST(OnlineChangeCommand, ARunFileThatCouldNotStartTheNewVersionRefusesIt) {
 
 /// A file that was deleted is brought back, and nothing is kept of what was not there.
 TEST(OnlineChangeCommand, AFileThatIsMissingAtTheWayBackLeavesNoEmptyOne) {
-  const test::Workbench bench;
-  bench.write("stage.st", stage(false));
-  bench.write("run.toml", online_run_file);
+  const StageBench bench;
   Served task(bench, "--engine interpreter");
   ASSERT_TRUE(task.has_begun()) << task.told();
   bench.write("stage.st", stage(true));
@@ -299,9 +294,7 @@ TEST(OnlineChangeCommand, AFileThatIsMissingAtTheWayBackLeavesNoEmptyOne) {
 
 /// What is refused whatever its steps do is refused before a compiler is started; what takes longer says what it does.
 TEST(OnlineChangeCommand, WhoWaitsIsToldForWhat) {
-  const test::Workbench bench;
-  bench.write("stage.st", stage(false));
-  bench.write("run.toml", online_run_file);
+  const StageBench bench;
   // Each call of this compiler takes its time, and is noted.
   bench.write("slow.sh", "#!/bin/sh\necho called >> compiler.txt\nsleep 2\nexec c++ \"$@\"\n");
   (void)bench.shell("chmod +x slow.sh");
@@ -323,9 +316,7 @@ TEST(OnlineChangeCommand, WhoWaitsIsToldForWhat) {
 
 /// No other user: the file is its owner's alone, and who comes another way is not heard.
 TEST(OnlineChangeCommand, NobodyElseIsHeard) {
-  const test::Workbench bench;
-  bench.write("stage.st", stage(false));
-  bench.write("run.toml", online_run_file);
+  const StageBench bench;
   Served task(bench, "--engine interpreter");
   ASSERT_TRUE(task.has_begun()) << task.told();
   struct stat found {};

@@ -30,6 +30,24 @@ struct ElevenRows {
     bench.run(100);
     bench.turn();
   }
+  void wait_for_the_disk() {
+    bench.pass(2100 * MqttBench::ms);
+    bench.turn();
+  }
+  void delete_files() const {
+    for (const std::string& name : folder.names()) {
+      std::filesystem::remove(folder.path() / name);
+    }
+  }
+  /// Ends in order: all rows wait for the next start.
+  void end_with_all_rows() {
+    bench.finish();
+    EXPECT_EQ(bench.count().lost, 0U);
+    EXPECT_EQ(bench.count().waiting, 11U);
+    EXPECT_THAT(bench.said(), HasSubstr("11 rows wait in "));
+    bench.stop();
+    EXPECT_EQ(rows_in_the_file(), 11U);
+  }
   [[nodiscard]] std::size_t rows_in_the_file(const std::string& owner = "") const {
     return OutboxFile(bench.settings.file, {"U", "Y"}, owner).rows().size();
   }
@@ -42,14 +60,8 @@ struct ElevenRows {
 /// An end in order keeps all that waits, and loses nothing.
 TEST_F(RowsInAFile, WhatWaitsAtTheEndIsKeptForTheNextStart) {
   ElevenRows waiting;
-  MqttBench& bench = waiting.bench;
   waiting.begin();
-  bench.finish();
-  EXPECT_EQ(bench.count().lost, 0U);
-  EXPECT_EQ(bench.count().waiting, 11U);
-  EXPECT_THAT(bench.said(), HasSubstr("11 rows wait in "));
-  bench.stop();
-  EXPECT_EQ(waiting.rows_in_the_file(), 11U);
+  waiting.end_with_all_rows();
 }
 
 /// Somebody clears the folder while the broker is away: rows do not go on into a file that has no name.
@@ -57,20 +69,17 @@ TEST_F(RowsInAFile, AFileThatIsDeletedIsSaidAndAnotherOneIsBegun) {
   ElevenRows waiting;
   MqttBench& bench = waiting.bench;
   waiting.begin();
-  const auto wait_for_the_disk = [&] {
-    bench.pass(2100 * MqttBench::ms);
-    bench.turn();
+  const auto wait_for_another = [&] {
+    waiting.wait_for_the_disk();
     bench.turn();
   };
-  wait_for_the_disk();
-  for (const std::string& name : waiting.folder.names()) {
-    std::filesystem::remove(waiting.folder.path() / name);
-  }
-  wait_for_the_disk();
+  wait_for_another();
+  waiting.delete_files();
+  wait_for_another();
   EXPECT_THAT(bench.said(), HasSubstr("rows.sqlite is gone; another one is begun. Had the task died meanwhile, 11 "
                                       "rows"));
   ASSERT_TRUE(bench.until([&] { return std::filesystem::exists(bench.settings.file); }));
-  wait_for_the_disk();
+  wait_for_another();
   EXPECT_EQ(bench.count().lost, 0U);
   bench.stop();
   EXPECT_EQ(waiting.rows_in_the_file(), 11U) << "as after a crash";
@@ -78,19 +87,10 @@ TEST_F(RowsInAFile, AFileThatIsDeletedIsSaidAndAnotherOneIsBegun) {
 
 TEST_F(RowsInAFile, AFileThatIsDeletedJustBeforeTheEndHasTheRowsThen) {
   ElevenRows waiting;
-  MqttBench& bench = waiting.bench;
   waiting.begin();
-  bench.pass(2100 * MqttBench::ms);
-  bench.turn();
-  for (const std::string& name : waiting.folder.names()) {
-    std::filesystem::remove(waiting.folder.path() / name);
-  }
-  bench.finish();
-  EXPECT_EQ(bench.count().lost, 0U);
-  EXPECT_EQ(bench.count().waiting, 11U);
-  EXPECT_THAT(bench.said(), HasSubstr("11 rows wait in "));
-  bench.stop();
-  EXPECT_EQ(waiting.rows_in_the_file(), 11U);
+  waiting.wait_for_the_disk();
+  waiting.delete_files();
+  waiting.end_with_all_rows();
 }
 
 /// What went to the file before the disk was full waits there, and is not lost.
@@ -98,14 +98,12 @@ TEST_F(RowsInAFile, AFullDiskAtTheEndLosesWhatIsNotInTheFileAlone) {
   ElevenRows waiting;
   MqttBench& bench = waiting.bench;
   waiting.begin();
-  bench.pass(2100 * MqttBench::ms);
-  bench.turn();  // eleven rows are on the disk
+  waiting.wait_for_the_disk();  // eleven rows are there
   {
     const hysteron::test::FileSizeLimit limit(1024);
     bench.run(200);
     bench.turn();
-    bench.pass(2100 * MqttBench::ms);
-    bench.turn();
+    waiting.wait_for_the_disk();
     bench.finish();
   }
   EXPECT_EQ(bench.count().lost, 20U);

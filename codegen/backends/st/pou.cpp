@@ -77,13 +77,15 @@ class StBlock {
       const bool ahead = one.kind == Statement::Kind::SetOutput && one.target < ahead_.size() && ahead_[one.target];
       (ahead ? behind : now).push_back(one);
     }
-    text += "  IF NOT ";
-    printer_.print_variable(names_.reset(), text);
-    text += " THEN\n";
+    std::string guarded;
     writer_.indent("    ");
-    writer_.write(now, text);
+    writer_.write(now, guarded);
     writer_.indent("  ");
-    text += "  END_IF;\n";
+    if (!guarded.empty()) {  // the standard has no empty list of statements
+      text += "  IF NOT ";
+      printer_.print_variable(names_.reset(), text);
+      append(text, " THEN\n", guarded, "  END_IF;\n");
+    }
     writer_.write(behind, text);
   }
 

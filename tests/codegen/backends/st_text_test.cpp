@@ -76,6 +76,25 @@ TEST(StText, OfRandomProgramsIsPortable) {
   }
 }
 
+/// The standard has no empty list of statements, and MATIEC keeps to it.
+void expect_statements_between(const std::string& text) {
+  std::string before;
+  for (const std::string& token : StAsCpp(text).tokens()) {
+    const bool opens = before == "THEN" || before == "ELSE" || before == "DO" || before == "OF";
+    EXPECT_FALSE(opens && (token.starts_with("END_") || token.starts_with("ELS"))) << before << ' ' << token;
+    before = token;
+  }
+}
+
+TEST(StText, OfRandomProgramsHasNoEmptyListOfStatements) {
+  for (std::uint64_t seed = 0; seed < 120; ++seed) {
+    const Program program = RandomDiagram(seed + 3000, "P", 30, {.rates = seed % 3 == 0}).program();
+    expect_statements_between(generate_st(program, {.dialect = *st_dialect("portable")})[0].text);
+    expect_statements_between(generate_st_structured(program, {.dialect = *st_dialect("portable")})[0].text);
+  }
+  expect_statements_between(generate_st_library(1'000'000, {.dialect = *st_dialect("portable")})[0].text);
+}
+
 TEST(StText, NamesThatACompilerKeepsAreChangedAndTheHeadSaysSo) {
   const std::string diagram =
       "FUNCTION_BLOCK SERVO (* @ts 1ms *) VAR_INPUT REF, RESET, SERVO : LREAL; NAME : LREAL; END_VAR\n"

@@ -17,6 +17,12 @@
 #include "codegen/trace/block_type.hpp"
 #include "codegen/trace/operation.hpp"
 
+/// What stands before the functions that run a block: a source that compiles this for a scalar of several registers has
+/// all that they call inlined, since such a scalar goes through memory to a function.
+#ifndef HY_RUN
+#define HY_RUN
+#endif
+
 namespace hysteron {
 
 /// One action of a step, ready to run: where the pins are read, where state and outputs stand.
@@ -142,19 +148,19 @@ struct Code {
       new (at.state) State{};
     }
   }
-  static void output(const Instruction<S>& at) {
+  HY_RUN static void output(const Instruction<S>& at) {
     with_prepared(at, [&](const Prepared& with) {
       *static_cast<Out*>(at.out) = output_of(with, state(at), gather<In>(at.pins), *at.ts);
     });
   }
-  static void update(const Instruction<S>& at) {
+  HY_RUN static void update(const Instruction<S>& at) {
     if constexpr (HasMemory<B>) {
       with_prepared(at, [&](const Prepared& with) {
         move_on(with, *static_cast<State*>(at.state), gather<In>(at.pins), *static_cast<const Out*>(at.out), *at.ts);
       });
     }
   }
-  static void step(const Instruction<S>& at) {
+  HY_RUN static void step(const Instruction<S>& at) {
     with_prepared(at, [&](const Prepared& with) {
       const auto in = gather<In>(at.pins);
       auto& memory = *static_cast<State*>(at.state);

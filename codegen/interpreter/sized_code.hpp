@@ -54,16 +54,16 @@ struct SizedCode {
     B::initial(block.sizes, view);
     view.move_on();
   }
-  static void output(const Instruction<S>& at) {
+  HY_RUN static void output(const Instruction<S>& at) {
     RunView<S> view(at);
     B::output(at.block->sized->sizes, view);
   }
-  static void update(const Instruction<S>& at) {
+  HY_RUN static void update(const Instruction<S>& at) {
     RunView<S> view(at);
     B::update(at.block->sized->sizes, view);
     view.move_on();
   }
-  static void step(const Instruction<S>& at) {
+  HY_RUN static void step(const Instruction<S>& at) {
     output(at);
     update(at);
   }

@@ -35,17 +35,28 @@ class Screening : private TriedEffect {
   /// The points of the grid about the starts that a thinner one has found; all of a quantum's: what lies between two of
   /// its points cannot be guessed from them.
   Screened run_about(const std::vector<Start>& coarse, std::size_t stride, std::size_t keep) {
-    std::vector<Start> starts;
+    std::vector<VectorXd> about;
+    std::vector<std::size_t> end_of_moves;
+    std::vector<Move> moves;
     for (const Start& start : coarse) {
-      VectorXd values = neutral();
+      VectorXd& values = about.emplace_back(neutral());
       for (Index k = 0; k < std::ssize(free()); ++k) {
         values[free()[static_cast<std::size_t>(k)]] = start.values[k];
       }
-      starts.push_back({.values = values, .gain = start.gain});
       for (const Index j : free()) {
         if (parameter(j).role != Role::Quantum || &start == &coarse.front()) {
-          try_neighbours(values, j, stride, starts);
+          move_along_grid(values, j, stride, moves);
         }
+      }
+      end_of_moves.push_back(moves.size());
+    }
+    prepare(moves);
+    std::vector<Start> starts;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+      starts.push_back({.values = about[i], .gain = coarse[i].gain});
+      for (; next < end_of_moves[i]; ++next) {
+        try_move(moves[next], starts);
       }
     }
     return finished(std::move(starts), keep);
@@ -94,12 +105,16 @@ class Screening : private TriedEffect {
         const double middle = best.values[j];
         const double below = between(low, middle);
         const double above = between(middle, high);
+        std::vector<Move> moves;
         for (const double value : {below, above}) {
           if (value != middle) {
-            VectorXd moved = best.values;
-            moved[j] = value;
-            try_moved(moved, j, starts);
+            moves.push_back({.values = best.values, .parameter = j});
+            moves.back().values[j] = value;
           }
+        }
+        prepare(moves);
+        for (const Move& move : moves) {
+          try_move(move, starts);
         }
         best = *std::ranges::max_element(starts, {}, &Start::gain);
         low = best.values[j] == middle ? below : best.values[j] < middle ? low : middle;
@@ -131,8 +146,23 @@ class Screening : private TriedEffect {
     return false;
   }
 
+  /// What a straight line through small strengths promises of a shape.
+  struct Promise {
+    VectorXd shape{};
+    std::vector<VectorXd> settings{};  ///< where it is held against the diagram: there, short of there, beyond
+    double gain = 0.0;
+  };
+
+  /// One parameter at another value.
+  struct Move {
+    VectorXd values{};
+    Index parameter = 0;
+    bool is_of_shape = false;           ///< a new shape, whose strengths are taken anew: the output is linear in them
+    std::optional<Promise> promised{};  ///< of that shape
+  };
+
   /// One parameter moved along its grid, the others where they are.
-  void try_neighbours(const VectorXd& values, Index j, std::size_t stride, std::vector<Start>& starts) {
+  void move_along_grid(const VectorXd& values, Index j, std::size_t stride, std::vector<Move>& moves) const {
     const Grid& grid = this->grid(j);
     const auto last = std::ssize(grid.values) - 1;
     if (last < 1) {
@@ -141,41 +171,48 @@ class Screening : private TriedEffect {
     const auto middle = static_cast<std::ptrdiff_t>(nearest(grid.values, values[j]));
     const bool whole = parameter(j).role == Role::Quantum;
     const auto reach = whole ? last : std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(stride) - 1);
-    std::vector<VectorXd> moved;
     for (auto k = std::max<std::ptrdiff_t>(0, middle - reach); k <= std::min(last, middle + reach); ++k) {
       if (k != middle) {
-        moved.push_back(values);
-        moved.back()[j] = grid.values[static_cast<std::size_t>(k)];
+        moves.push_back({.values = values, .parameter = j});
+        moves.back().values[j] = grid.values[static_cast<std::size_t>(k)];
       }
     }
-    foresee_moved(moved, j);
-    for (const VectorXd& there : moved) {
-      try_moved(there, j, starts);
-    }
   }
 
-  /// One parameter at another value; a new shape takes its strengths anew where the output is linear in them.
-  void try_moved(const VectorXd& moved, Index j, std::vector<Start>& starts) {
-    if (parameter(j).strength) {
-      try_point(moved, starts);
-      return;
+  /// What straight lines promise of all moves at once, so that the points they ask for can be run side by side.
+  void prepare(std::vector<Move>& moves) {
+    std::vector<VectorXd> shapes;
+    for (Move& move : moves) {
+      const VectorXd shape = shape_of(move.values);
+      move.is_of_shape = !parameter(move.parameter).strength && is_linear_there(shape);
+      if (move.is_of_shape) {
+        shapes.push_back(shape);
+      }
     }
-    const VectorXd shape = shape_of(moved);
+    foresee_changes(shapes);
+    std::vector<VectorXd> first;
+    for (Move& move : moves) {
+      if (!move.is_of_shape) {
+        first.push_back(move.values);
+        continue;
+      }
+      move.promised = promised(shape_of(move.values), strengths(), true);
+      if (move.promised && !move.promised->settings.empty()) {
+        first.push_back(move.promised->settings.front());
+      }
+    }
+    foresee(first);
+  }
+
+  void try_move(const Move& move, std::vector<Start>& starts) {
     const std::size_t before = starts.size();
-    if (is_linear_there(shape)) {
-      try_shapes({&shape, 1}, starts);
+    if (move.promised) {
+      hold(*move.promised, true, starts);
     }
     if (starts.size() == before) {
-      try_point(moved, starts);
+      try_point(move.values, starts);
     }
   }
-
-  /// What a straight line through small strengths promises of a shape.
-  struct Promise {
-    VectorXd shape{};
-    std::vector<VectorXd> settings{};  ///< where it is held against the diagram: there, short of there, beyond
-    double gain = 0.0;
-  };
 
   /// So many at a time that all points that they will ask for can be foreseen.
   void try_shapes(std::span<const VectorXd> shapes, std::vector<Start>& starts) {
@@ -207,12 +244,17 @@ class Screening : private TriedEffect {
     }
     foresee(first);
     for (const Promise& one : promises) {
-      const bool kept = is_kept(one, linear, starts);
-      // A short delay or lag is linear, and says nothing of a long one, as a friction that never holds says nothing of
-      // one that does: about parameters that are off it may even seem to make things worse.
-      if ((!amplitudes || !kept) && !std::exchange(grid_tried_, true)) {
-        try_grid(one.shape, list, starts);
-      }
+      hold(one, linear, starts);
+    }
+  }
+
+  /// A promise against the diagram. A short delay or lag is linear, and says nothing of a long one, as a friction that
+  /// never holds says nothing of one that does: about parameters that are off it may even seem to make things worse.
+  void hold(const Promise& promise, bool linear, std::vector<Start>& starts) {
+    const std::vector<Index> list = strengths();
+    const bool kept = is_kept(promise, linear, starts);
+    if ((!are_amplitudes(list) || !kept) && !std::exchange(grid_tried_, true)) {
+      try_grid(promise.shape, list, starts);
     }
   }
 

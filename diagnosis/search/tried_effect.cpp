@@ -143,16 +143,6 @@ void TriedEffect::foresee_changes(std::span<const VectorXd> shapes) {
   foresee(settings);
 }
 
-void TriedEffect::foresee_moved(std::span<const VectorXd> moved, Index j) {
-  std::vector<VectorXd> shapes;
-  std::ranges::transform(moved, std::back_inserter(shapes), [&](const VectorXd& there) { return shape_of(there); });
-  if (!parameter(j).strength && !shapes.empty() && is_linear_there(shapes.front())) {
-    foresee_changes(shapes);
-  } else {
-    foresee(moved);
-  }
-}
-
 Screened TriedEffect::with(std::vector<Start> starts) && {
   screened_.starts = std::move(starts);
   return std::move(screened_);

@@ -49,8 +49,6 @@ class TriedEffect {
   void foresee(std::span<const VectorXd> settings);
   /// What each shape asks for first: the change by each of its strengths.
   void foresee_changes(std::span<const VectorXd> shapes);
-  /// The same for settings of which one parameter has moved.
-  void foresee_moved(std::span<const VectorXd> moved, Index j);
 
   /// What was found, to be given away.
   [[nodiscard]] Screened with(std::vector<Start> starts) &&;

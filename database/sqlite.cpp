@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
+#include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <limits>
 #include <system_error>
+
+#include "support/atomic_file.hpp"
 
 namespace hysteron::database {
 namespace {
@@ -40,6 +45,17 @@ bool is_at_rest(const std::filesystem::path& path) {
   return std::filesystem::exists(path, unknown) && !std::filesystem::exists(log, unknown);
 }
 
+/// A file that may not be written is opened to be read alone: what the system says last is of that, and not why.
+int reason_of_unreachable(const std::string& name, int code, int cause) {
+  if ((code & 0xff) != SQLITE_READONLY && (code & 0xff) != SQLITE_CANTOPEN) {
+    return cause;
+  }
+  const std::filesystem::path path(name);
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  const char* const written = ::access(name.c_str(), F_OK) == 0 ? name.c_str() : folder.c_str();
+  return ::access(written, W_OK) != 0 ? errno : cause;
+}
+
 /// As a URI, in which the file is said to change no more.
 std::string unchanging(const std::filesystem::path& path) {
   std::string uri = "file:";
@@ -54,6 +70,17 @@ std::string unchanging(const std::filesystem::path& path) {
 
 void Database::Closed::operator()(sqlite3* file) const {
   sqlite3_close_v2(file);
+}
+
+std::string way_out(const DatabaseError& problem) {
+  std::string way = mend_of_machine(problem.reason());
+  if (way.empty() && problem.reason() == EACCES) {
+    way = "give this user the right to write there";
+  } else if (way.empty()) {
+    way = problem.trouble() == Trouble::Held ? "end the program that has it" : "clear what is in the way there";
+  }
+  way.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(way.front())));
+  return way;
 }
 
 std::string put_aside(const std::filesystem::path& path) {
@@ -115,10 +142,13 @@ void Database::fail() const {
   const int code = sqlite3_errcode(file_.get());
   const int cause = sqlite3_system_errno(file_.get());
   const Trouble trouble = trouble_of(code);
-  const bool tells = cause != 0 && trouble == Trouble::Unreachable;
+  const int reason = trouble == Trouble::Full          ? ENOSPC
+                     : trouble == Trouble::Unreachable ? reason_of_unreachable(name_, code, cause)
+                                                       : cause;
+  const bool tells = reason != 0 && trouble == Trouble::Unreachable;
   throw DatabaseError(fmt::format("{}: {}{}", name_, sqlite3_errmsg(file_.get()),
-                                  tells ? fmt::format(" ({})", std::generic_category().message(cause)) : ""),
-                      trouble);
+                                  tells ? fmt::format(" ({})", std::generic_category().message(reason)) : ""),
+                      trouble, reason);
 }
 
 void Database::run(const std::string& sql) {

@@ -26,14 +26,21 @@ enum class Trouble : std::uint8_t {
 /// What SQLite says of a file: "fleet.sqlite: database is locked".
 class DatabaseError : public std::runtime_error {
  public:
-  DatabaseError(const std::string& text, Trouble trouble) : std::runtime_error(text), trouble_(trouble) {}
+  DatabaseError(const std::string& text, Trouble trouble, int reason = 0)
+      : std::runtime_error(text), trouble_(trouble), reason_(reason) {}
   [[nodiscard]] Trouble trouble() const { return trouble_; }
+  /// As errno says it; 0 where the system did not.
+  [[nodiscard]] int reason() const { return reason_; }
   /// Another try may succeed, as where another process writes or the disk is full.
   [[nodiscard]] bool is_passing() const { return trouble_ != Trouble::Damaged && trouble_ != Trouble::Other; }
 
  private:
   Trouble trouble_;
+  int reason_;
 };
+
+/// What somebody who reads of it can do, begun with a capital and without an end: "Make room on the disk".
+[[nodiscard]] std::string way_out(const DatabaseError& problem);
 
 class Statement;
 

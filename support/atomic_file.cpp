@@ -26,6 +26,19 @@ bool is_trouble_of_disk(int reason) {
   return is_want_of_room(reason) || reason == EROFS || reason == EIO || reason == ESTALE;
 }
 
+std::string mend_of_machine(int reason) {
+  if (is_want_of_room(reason)) {
+    return "make room on the disk";
+  }
+  if (reason == EMFILE || reason == ENFILE) {
+    return "let more files be open: `ulimit -n` says how many, and LimitNOFILE= of a service";
+  }
+  return is_trouble_of_disk(reason) ? "see to the disk: one that could be written before and is read-only now has had "
+                                      "an error, and dmesg names "
+                                      "it"
+                                    : "";
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,10 +49,8 @@ namespace fs = std::filesystem;
     mend = "give the name of a file, or remove the folder of that name.";
   } else if (reason == ENAMETOOLONG) {
     mend = "give it a shorter name; a generated file is named after its block.";
-  } else if (is_want_of_room(reason)) {
-    mend = "make room on the disk, or choose another one.";
-  } else if (is_trouble_of_disk(reason)) {
-    mend = "choose another disk; one that could be written before has had an error, and dmesg names it.";
+  } else if (const std::string of_machine = mend_of_machine(reason); !of_machine.empty()) {
+    mend = of_machine + (is_trouble_of_disk(reason) ? "; or choose another one." : ".");
   }
   const Place place{.file = path.string()};
   const auto cause = fmt::format("The file {} cannot be written: {}.", path.string(), std::strerror(reason));

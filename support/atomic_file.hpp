@@ -21,6 +21,10 @@ namespace hysteron {
 /// error, for which the system may have made it read-only.
 [[nodiscard]] bool is_trouble_of_disk(int reason);
 
+/// What mends it where a file cannot be used for a reason that has nothing to do with its name, a clause without an
+/// end: "make room on the disk". Empty where the name or its rights are the reason.
+[[nodiscard]] std::string mend_of_machine(int reason);
+
 /// HY700 for a trouble of the disk: what passes without an edit.
 class DiskTroubleError : public InputError {
  public:

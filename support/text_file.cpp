@@ -13,6 +13,7 @@
 #include <memory>
 #include <vector>
 
+#include "support/atomic_file.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -54,6 +55,8 @@ std::string neighbours(const std::filesystem::path& path) {
     }
   } else if (reason == EISDIR) {
     mend = "give the path of a file inside it.";
+  } else if (const std::string of_machine = mend_of_machine(reason); !of_machine.empty()) {
+    mend = of_machine + ".";
   } else if (reason == EACCES) {
     mend = "ask for permission to read it (chmod, chown).";
   }

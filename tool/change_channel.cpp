@@ -140,9 +140,11 @@ std::optional<std::string> progress_of(const std::string& line) {
                                                        : std::nullopt;
 }
 
-[[noreturn]] void refuse_socket(const std::string& path, const Place& place, const std::string& why) {
-  throw InputError(error::unusable_change_socket, place, fmt::format("There can be no socket {}: {}.", path, why),
-                   "name a file of fewer than 108 bytes, in a folder that is there and that this user may write.");
+[[noreturn]] void refuse_socket(const std::string& path, const Place& place, int reason) {
+  const std::string of_machine = mend_of_machine(reason);
+  throw InputError(
+      error::unusable_change_socket, place, fmt::format("There can be no socket {}: {}.", path, problem_text(reason)),
+      of_machine.empty() ? "name a file in a folder that is there and that this user may write." : of_machine + ".");
 }
 
 /// Refuses what is at the name and is not a socket that a task which is gone has left.
@@ -170,18 +172,20 @@ ChangeListener::ChangeListener(const std::string& path, const Place& place, Answ
       missing_(std::move(missing)),
       socket_(new_private_socket()),
       end_(::eventfd(0, EFD_CLOEXEC)) {
+  if (!socket_.is_open() || !end_.is_open()) {
+    refuse_socket(path, place, errno);  // of what came last, before another call has its own
+  }
   const auto address = address_of(path);
   if (!address) {
-    refuse_socket(path, place, "the name is too long, or empty");
+    throw InputError(error::unusable_change_socket, place,
+                     fmt::format("There can be no socket {}: the name is too long.", path),
+                     "name a file of fewer than 108 bytes.");
   }
   require_free(path, place, *address);
-  if (!socket_.is_open() || !end_.is_open()) {
-    refuse_socket(path, place, problem_text(errno));
-  }
   const int problem = listen();
   listens_ = problem == 0;
   if (!listens_ && !is_trouble_of_disk(problem)) {
-    refuse_socket(path, place, problem_text(problem));
+    refuse_socket(path, place, problem);
   }
   if (!listens_) {
     miss(fmt::format("there can be no socket {} yet: {}", path, problem_text(problem)));

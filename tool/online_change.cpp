@@ -131,8 +131,9 @@ std::string edited_run_file_text(const Json& report) {
 
 /// The files are those of the version that runs.
 std::string nothing_text(const Json& report) {
-  return fmt::format("{}: nothing changed; version {} runs on, and --back goes where it went before\n",
-                     report.at("program").get<std::string>(), report.at("version").get<std::uint64_t>()) +
+  return fmt::format("{}: nothing changed; version {} runs on{}\n", report.at("program").get<std::string>(),
+                     report.at("version").get<std::uint64_t>(),
+                     report.at("way_back").get<bool>() ? ", and --back goes where it went before" : "") +
          edited_run_file_text(report);
 }
 

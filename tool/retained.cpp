@@ -71,13 +71,23 @@ Newest newest_of(runtime::RetainFolder& folder, const std::string& name) {
       }
     }
   } catch (const std::system_error& problem) {
-    refuse(name, problem.what(),
-           problem.code() == std::errc::not_a_directory
-               ? "name the folder that stands at `folder` under [retain] of the run file."
-               : "give this user the right to read it.");
+    refuse(
+        name, problem.what(),
+        problem.code() == std::errc::not_a_directory
+            ? "name the folder that stands at `folder` under [retain] of the run file."
+        : problem.code() == std::errc::permission_denied
+            ? "give this user the right to read it."
+            : "remove what is in its way, or see to the disk; the task starts with mismatch = \"cold\" once the slot "
+              "is gone.");
+  }
+  if (!newest && is_any) {
+    refuse(
+        name, "no slot is whole.",
+        "put copies of retain_a and retain_b back, or start the task with mismatch = \"cold\", which puts both aside; "
+        "and see to the disk.");
   }
   if (!newest) {
-    refuse(name, is_any ? "no slot is whole." : "there are no retained values here.",
+    refuse(name, "there are no retained values here.",
            "name the folder that stands at `folder` under [retain] of the run file.");
   }
   newest->layout = runtime::read_description(newest->values.described, newest->values.state.size());

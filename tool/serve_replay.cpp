@@ -20,8 +20,8 @@ constexpr std::string_view serve_replay_examples = R"(Examples:
   hysteron diagnose plant.st --params plant.toml --log record.csv
 
 Runs the diagram over the recorded inputs, from the recorded state and parameters, and compares every output, bit by bit.
-The record has t, which counts steps, and inputs and outputs as they left, for run, tune and diagnose. The engine must
-be the one that the trace was recorded with, for the bytes of its state.
+The record has t, which counts steps, and inputs and outputs as they left, for run, tune and diagnose. It runs by
+the engine that the trace was recorded with, for the bytes of its state.
 Exit codes: 0 the same bits; 1 other bits, steps that were dropped or cannot be replayed, or no step; 2 no trace of this
 diagram.
 )";
@@ -95,7 +95,7 @@ Action add_replay(CLI::App& app) {
   add_diagram_options(app, options->diagram);
   app.add_option("--trace", options->trace, "The trace.")->required()->option_text("RUN.trace");
   app.add_option("--out", options->output, "Writes the trace as a record.")->option_text("RECORD.csv");
-  app.add_option("--engine", options->engine, "interpreter, or compiled: the default where there is a compiler.")
+  app.add_option("--engine", options->engine, "interpreter or compiled; the default, that of the trace.")
       ->check(CLI::IsMember({"interpreter", "compiled"}))
       ->option_text("NAME");
   app.footer(std::string(serve_replay_examples));

@@ -179,6 +179,7 @@ std::string ServedVersions::answer(runtime::OnlineChange& change, const std::str
     }
     if (answer.contains("report")) {
       answer["report"]["run_file_edited"] = is_run_file_edited();
+      answer["report"]["way_back"] = !former_.empty();
     }
     answer["warnings"] = as_json(warnings);
   } catch (const InputError& refused) {

@@ -149,7 +149,10 @@ std::optional<DeviceLink> DeviceReader::read_link(const ProgramSignal& port, boo
   }
   const DeviceLink link{.device = device, .value = found->values.size(), .faults = loss == 0};
   found->values.push_back(value);
-  values_.push_back({.name = port.name, .place = table.place("device"), .link = link, .written = written});
+  values_.push_back({.name = port.name,
+                     .place = table.place(table.has("register") ? "register" : "device"),
+                     .link = link,
+                     .written = written});
   return link;
 }
 

@@ -5,7 +5,7 @@
 namespace hysteron::runtime {
 
 HistoryConfig HistoryReading::read(TomlReader table) {
-  HistoryConfig history{.place = table.place()};
+  HistoryConfig history{.place = table.place("file")};
   table.require("file", "\"history.sqlite\"");
   table.read("file", history.file);
   history.step = read_step(table, *shape_, *found_);

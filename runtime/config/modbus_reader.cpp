@@ -91,6 +91,14 @@ void ModbusReader::read_server(TomlReader table, bool over_tls) {
   modbus.port = over_tls ? 802 : modbus.port;
   table.read_whole("port", modbus.port);
   table.read("allow", modbus.allow, R"(["192.168.10.0/24"])");
+  for (std::size_t i = 0; i < modbus.allow.size(); ++i) {
+    try {
+      (void)modbus::networks_of({modbus.allow[i]}, table.place("allow", i));
+    } catch (const InputError& refused) {
+      found_->add_all(refused.diagnostics());
+    }
+  }
+  modbus.listen_place = table.place(table.has("port") ? "port" : "listen");
   refuse_open_to_all(table, modbus, over_tls);
   table.read_whole("connections", modbus.connections);
   modbus.connections_per_address = std::max<std::size_t>(1, modbus.connections / 4);
@@ -105,6 +113,7 @@ void ModbusReader::read_server(TomlReader table, bool over_tls) {
   table.read_choice("map", placing);
   modbus.placing = static_cast<modbus::Placing>(placing);
   table.read("lock_file", modbus.lock_file);
+  modbus.lock_place = table.place("lock_file");
   table.read("expose", modbus.expose, R"(["NAME", "LOOP.*"])");
   modbus.expose_place = table.place("expose");
   if (table.has("expose") && modbus.expose.empty()) {
@@ -143,7 +152,8 @@ void ModbusReader::read_addresses(const std::string& prefix, const toml::table& 
       found_->error(error::wrong_run_value, place, name + " has an address, and there is no server.",
                     "add the table [modbus], or remove [addresses].");
     } else {
-      config_->modbus->registers.push_back({.name = name, .address = node.as_string()->get(), .place = place});
+      config_->modbus->registers.push_back(
+          {.name = name, .address = node.as_string()->get(), .place = place, .address_place = place});
     }
   }
 }
@@ -166,7 +176,7 @@ void ModbusReader::read_registers(const std::string& prefix, const toml::table& 
 }
 
 void ModbusReader::read_register(const std::string& name, TomlReader table) {
-  modbus::GivenRegister given{.name = name, .place = table.place()};
+  modbus::GivenRegister given{.name = name, .place = table.place(), .address_place = table.place("at")};
   table.read("at", given.address);
   given.format = read_format(table);
   if (!config_->modbus) {

@@ -28,7 +28,6 @@ void MqttReader::read(const toml::table* mqtt, const toml::table* dead_bands) {
   }
   TomlReader table(*file_, "[mqtt]", *mqtt, run_table("mqtt").keys, *found_);
   MqttConfig read;  // GCC 12 frees twice what an initialiser holds where a later one throws
-  read.place = table.place();
   read_broker(table, read);
   read_payload(table, read);
   read_rows(table, read);
@@ -148,6 +147,7 @@ void MqttReader::read_rows(TomlReader& table, MqttConfig& mqtt) {
     useless(table, "refresh", "every row is published whole", "write on_change = true, or remove the key.");
   }
   table.read("file", mqtt.file);
+  mqtt.file_place = table.place("file");
   table.read_duration("keep", mqtt.keep);
   std::uint64_t megabytes = mqtt.bytes / 1'000'000;
   table.read_whole("megabytes", megabytes);

@@ -61,6 +61,7 @@ class Reader {
     config_.task.inputs.resize(shape_.inputs.size());
     config_.task.outputs.resize(shape_.outputs.size());
     has_safe_value_.resize(shape_.outputs.size(), false);
+    output_places_.resize(shape_.outputs.size(), {.file = file_});
     if (const auto* const table = table_at(root_, "task")) {
       read_task({file_, "[task]", *table, run_table("task").keys, found_});
     }
@@ -101,7 +102,7 @@ class Reader {
     for (std::size_t i = 0; i < has_safe_value_.size(); ++i) {
       if (!has_safe_value_[i]) {
         const std::string& name = shape_.outputs[i].name;
-        found_.error(error::no_safe_value, {.file = file_}, "The output " + name + " has no safe value.",
+        found_.error(error::no_safe_value, output_places_[i], "The output " + name + " has no safe value.",
                      "write what it shall be when something is wrong: [outputs." + toml_key(name) +
                          "], and below it safe = 0.0.");
       }
@@ -221,6 +222,7 @@ class Reader {
   void read_output(const toml::key& key, const toml::table& node) {
     for (const std::size_t port : indices_of(key.str(), shape_.outputs)) {
       has_safe_value_[port] = has_safe_value_[port] || node.contains("safe");
+      output_places_[port] = place_of(file_, key.source());
     }
     read_each(ports_of(key, node, "output", shape_.outputs), [&](std::size_t port) { read_output(port, key, node); });
   }
@@ -254,6 +256,9 @@ class Reader {
   void check_safe_value(std::size_t port, const TomlReader& table) {
     const std::string& name = shape_.outputs[port].name;
     const OutputSafety& output = config_.task.outputs[port];
+    if (!table.has("safe")) {
+      return;  // which is said of it
+    }
     const auto refuse = [&](const std::string& why, const std::string& mend) {
       found_.error(error::unfit_safe_value, table.place("safe"),
                    "The safe value " + number_text(output.value) + " of " + name + why, mend);
@@ -319,10 +324,15 @@ class Reader {
   }
 
   void read_retain(TomlReader table) {
-    RetainConfig retain{.place = table.place()};
+    RetainConfig retain{.place = table.place("folder")};
     table.require("folder", "\"retained\"");
     table.read("folder", retain.folder);
-    if (table.is_whole("every")) {
+    if (table.is_whole("every") && root_["retain"]["every"].value_or(std::int64_t{0}) < 1) {
+      found_.error(error::run_value_out_of_range, table.place("every"),
+                   "A whole number at every counts cycles, and there is none of less than 1.",
+                   "write every = 1 for each cycle, or a time as every = \"1s\"; what a client commits is written at "
+                   "once besides.");
+    } else if (table.is_whole("every")) {
       table.read_whole("every", config_.task.retain_every);
     } else {
       std::int64_t every = 1'000'000'000;
@@ -377,11 +387,24 @@ class Reader {
     config_.trace_place = table.place("file");
   }
 
+  /// Of the first key with which an input asks to be retained.
+  [[nodiscard]] Place place_of_retain() const {
+    Place first{.file = file_};
+    for (const auto& [name, input] : *root_["inputs"].as_table()) {
+      const auto* const asked = input.is_table() ? input.as_table()->get("retain") : nullptr;
+      if (asked != nullptr && asked->value_or(false)) {
+        const Place place = place_of(file_, asked->source());
+        first = first.line == 0 || place.line < first.line ? place : first;
+      }
+    }
+    return first;
+  }
+
   void check_retained_inputs() {
     const auto is_any =
         std::ranges::any_of(config_.task.inputs, [](const InputSettings& one) { return one.is_retained; });
     if (is_any && !root_.contains("retain")) {
-      found_.error(error::wrong_run_value, {.file = file_}, "An input has retain = true, and nothing is retained.",
+      found_.error(error::wrong_run_value, place_of_retain(), "An input has retain = true, and nothing is retained.",
                    "add [retain] with folder = \"retained\", or remove the key.");
     }
   }
@@ -422,6 +445,7 @@ class Reader {
   toml::table root_;
   RunConfig config_{};
   std::vector<bool> has_safe_value_{};
+  std::vector<Place> output_places_{};  ///< of its table; of the file where it has none
   std::set<const ProgramSignal*> ports_seen_{};
   Diagnostics found_{};
   DeviceReader devices_{file_, shape_, config_, found_};

@@ -97,7 +97,7 @@ struct MqttConfig {
   std::int64_t keep = std::int64_t{86'400'000'000'000};
   std::uint64_t bytes = 64'000'000;
   std::string file{};  ///< of the rows that wait; empty: they are in memory alone
-  Place place{};
+  Place file_place{};
 };
 
 struct ModbusConfig {
@@ -113,6 +113,7 @@ struct ModbusConfig {
   modbus::WordOrder word_order = modbus::WordOrder::abcd;
   modbus::Placing placing = modbus::Placing::compact;
   std::string lock_file{};
+  Place lock_place{};
   std::vector<std::string> expose{};  ///< names, or what they begin with and a star; none: all points
   Place expose_place{};
   bool has_discovery = true;
@@ -121,6 +122,7 @@ struct ModbusConfig {
   modbus::HeartbeatOptions heartbeat{};
   std::optional<modbus::TlsOptions> tls{};
   Place place{};
+  Place listen_place{};  ///< of the port, or of what else says where it listens
 };
 
 struct WebConfig {

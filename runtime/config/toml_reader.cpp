@@ -54,9 +54,38 @@ Place TomlReader::place(std::string_view key) const {
   return place_of(*file_, node == nullptr ? table_->source() : node->source());
 }
 
+Place TomlReader::place(std::string_view key, std::size_t element) const {
+  const auto* const list = table_->get_as<toml::array>(key);
+  const auto* const node = list == nullptr ? nullptr : list->get(element);
+  return node == nullptr ? place(key) : place_of(*file_, node->source());
+}
+
 void TomlReader::wrong_type(std::string_view key, const std::string& wanted, const std::string& example) {
   diagnostics_->error(error::wrong_run_value, place(key), std::string(key) + " must be " + wanted + ".",
                       "write it as in " + std::string(key) + " = " + example + ".");
+}
+
+/// With the number that stands there, in a unit that the key may have.
+void TomlReader::wrong_time(std::string_view key, const toml::node& node, std::int64_t low, std::int64_t high) {
+  std::string given = node.value<std::string>().value_or("");
+  if (const auto number = node.value<double>(); node.is_number() && number) {
+    given = number_text(*number);
+  }
+  for (const char* const unit : {"s", "ms", "us", "min", "h", "d", "ns"}) {
+    const auto time = parse_duration(given + unit);
+    if (time && low <= *time && *time <= high) {
+      diagnostics_->error(error::wrong_run_value, place(key),
+                          std::string(key) + " is a length of time, and " + given + " has no unit.",
+                          "write it with its unit, in quotes: " + std::string(key) + " = \"" + given + unit +
+                              "\"; units are ns, us, ms, s, min, h and d.");
+      return;
+    }
+  }
+  const std::string_view usual = declared(key).otherwise;
+  wrong_type(key, "a length of time in ns, us, ms, s, min, h or d",
+             usual.starts_with('"')
+                 ? std::string(usual)
+                 : "\"" + time_text(static_cast<double>(std::clamp<std::int64_t>(5'000'000, low, high))) + "\"");
 }
 
 void TomlReader::out_of_range(std::string_view key, const std::string& range) {
@@ -168,7 +197,7 @@ void TomlReader::read_duration(std::string_view key, std::int64_t& into, std::in
   }
   const auto value = node->is_string() ? parse_duration(node->as_string()->get()) : std::nullopt;
   if (!value) {
-    return wrong_type(key, "a length of time in ns, us, ms, s, min, h or d", "\"5ms\"");
+    return wrong_time(key, *node, low, high);
   }
   if (*value < low || *value > high) {
     return out_of_range(key,
@@ -193,7 +222,17 @@ void TomlReader::read_choice(std::string_view key, std::size_t& into) {
   const auto text = node->value<std::string_view>();
   const auto found = text ? std::ranges::find(words, *text) : words.end();
   if (found == words.end()) {
-    return wrong_type(key, "one of: " + listed(words), "\"" + std::string(words.front()) + "\"");
+    // None of them is an example for the others: what was meant is told, or all that there are.
+    const std::string_view near = text ? nearest_name(*text, words) : "";
+    std::string mend =
+        near.empty() ? "write " + std::string(key) + " = " : "did you mean \"" + std::string(near) + "\"?";
+    for (std::size_t i = 0; near.empty() && i < words.size(); ++i) {
+      mend += (i == 0 ? "\"" : i + 1 < words.size() ? "\", \"" : "\" or \"") + std::string(words[i]);
+    }
+    diagnostics_->error(error::wrong_run_value, place(key),
+                        std::string(key) + " must be one of: " + listed(words) + ".",
+                        mend + (near.empty() ? "\"." : ""));
+    return;
   }
   into = static_cast<std::size_t>(found - words.begin());
 }

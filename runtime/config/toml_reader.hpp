@@ -50,6 +50,8 @@ class TomlReader {
   [[nodiscard]] bool is_whole(std::string_view key) const { return has(key) && table_->get(key)->is_integer(); }
   /// Of a value; of the table where the key is not there.
   [[nodiscard]] Place place(std::string_view key) const;
+  /// Of an element of a list; of the list where it has none such.
+  [[nodiscard]] Place place(std::string_view key, std::size_t element) const;
   [[nodiscard]] Place place() const { return place_of(*file_, table_->source()); }
   [[nodiscard]] const std::string& name() const { return name_; }
 
@@ -57,6 +59,7 @@ class TomlReader {
   [[nodiscard]] const RunKey& declared(std::string_view key) const;
   std::optional<std::int64_t> whole(std::string_view key);
   void wrong_type(std::string_view key, const std::string& wanted, const std::string& example);
+  void wrong_time(std::string_view key, const toml::node& node, std::int64_t low, std::int64_t high);
   void out_of_range(std::string_view key, const std::string& range);
 
   const std::string* file_;

@@ -57,8 +57,7 @@ void HistoryKeeper::turn(bool is_last) {
   }
   try {
     open();
-    write();
-    trim(now);
+    write(now);
     is_well();
   } catch (const DatabaseError& problem) {
     failed(problem);
@@ -74,13 +73,17 @@ void HistoryKeeper::turn(bool is_last) {
 void HistoryKeeper::open() {
   if (file_ && !file_->is_there()) {
     remarks_.say("its file is gone; another one is begun. Rows of the last second may be lost.");
+    file_->finish_log();
     file_.reset();
   }
-  if (file_) {
-    return;
+  if (settings_.lock && !settings_.lock->is_there()) {
+    settings_.lock.reset();  // what deleted it may have let another task in
   }
   if (!settings_.lock) {
     settings_.lock.emplace(settings_.plan.file);
+  }
+  if (file_) {
+    return;
   }
   file_.emplace(settings_.plan, is_damaged_);
   is_damaged_ = false;
@@ -90,7 +93,8 @@ void HistoryKeeper::open() {
   }
 }
 
-void HistoryKeeper::write() {
+void HistoryKeeper::write(std::int64_t now) {
+  trim(now);
   do {
     if (waiting_.empty()) {
       tap_->take(waiting_);
@@ -105,14 +109,19 @@ void HistoryKeeper::write() {
       file_->add(std::span(waiting_).first(count), times);
       waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
       counter_->add_done(count);
+      newest_ms_ = times.back();
+      trim(now);  // on a virtual clock, all of a run may come in one turn
     }
     tap_->take(waiting_);
   } while (!waiting_.empty());
 }
 
+/// A virtual clock is never set: there, age is judged by the newest row.
 void HistoryKeeper::trim(std::int64_t now) {
-  const bool by_age = now >= judges_age_from_ && !settings_.virtual_time;
-  file_->trim(by_age ? std::optional(time_.now_ms() - settings_.keep / 1'000'000) : std::nullopt);
+  const std::optional<std::int64_t> today_ms = settings_.virtual_time    ? newest_ms_
+                                               : now >= judges_age_from_ ? std::optional(time_.now_ms())
+                                                                         : std::nullopt;
+  file_->trim(today_ms ? std::optional(*today_ms - settings_.keep / 1'000'000) : std::nullopt);
 }
 
 void HistoryKeeper::watch_clock() {
@@ -132,9 +141,9 @@ void HistoryKeeper::failed(const DatabaseError& problem) {
   retry_at_ = time_.steady() + pause_;
   tap_->wait_for_reader(false);
   counter_->set_fault(static_cast<std::uint16_t>(fault_of(problem.trouble())));
-  remarks_.failed(problem.what(), fmt::format("nothing is written any more: {}. Clear what is in the way there; it is "
-                                              "tried again, at last once a minute. The task goes on.",
-                                              problem.what()));
+  remarks_.failed(problem.what(), fmt::format("nothing is written any more: {}. {}; it is tried again, at last once a "
+                                              "minute. The task goes on.",
+                                              problem.what(), database::way_out(problem)));
 }
 
 void HistoryKeeper::is_well() {

@@ -41,7 +41,7 @@ class HistoryKeeper {
 
  private:
   void open();
-  void write();
+  void write(std::int64_t now);
   void trim(std::int64_t now);
   void failed(const database::DatabaseError& problem);
   void is_well();
@@ -53,7 +53,8 @@ class HistoryKeeper {
   TaskTime time_;
   std::optional<HistoryFile> file_{};
   bool is_damaged_ = false;
-  std::vector<Sample> waiting_{};  ///< taken from the tap, and not yet on the disk
+  std::vector<Sample> waiting_{};            ///< taken from the tap, and not yet on the disk
+  std::optional<std::int64_t> newest_ms_{};  ///< of the rows on the disk
   std::int64_t judges_age_from_ = 0;
   std::int64_t retry_at_ = 0;
   std::int64_t pause_ = 0;

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -42,15 +43,21 @@ std::int64_t number_of(Database& database, const char* question) {
 
 }  // namespace
 
-HistoryLock::HistoryLock(const std::filesystem::path& file) {
+HistoryLock::HistoryLock(const std::filesystem::path& file) : path_(beside(file, ".lock")) {
   std::error_code unknown;  // the next call says what is wrong
   std::filesystem::create_directories(file.parent_path(), unknown);
-  const auto lock = beside(file, ".lock");
-  held_ = Descriptor(::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  held_ = Descriptor(::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
   if (held_.number() < 0 || ::flock(held_.number(), LOCK_EX | LOCK_NB) != 0) {
     const int cause = errno;
-    throw DatabaseError(fmt::format("{}: {}", lock.string(), std::generic_category().message(cause)),
-                        cause == EWOULDBLOCK ? Trouble::Held : Trouble::Unreachable);
+    if (cause == EWOULDBLOCK) {
+      throw DatabaseError(file.string() + ": another task writes it", Trouble::Held);
+    }
+    throw DatabaseError(fmt::format("{}: {}", path_.string(), std::generic_category().message(cause)),
+                        Trouble::Unreachable);
+  }
+  struct stat mine {};
+  if (::fstat(held_.number(), &mine) == 0) {
+    identity_ = identity_of(mine);
   }
 }
 
@@ -150,6 +157,14 @@ std::string HistoryFile::column_of(const Point& point) {
 
 bool HistoryFile::is_there() const {
   return identity_ && file_behind(path_) == identity_;
+}
+
+void HistoryFile::finish_log() noexcept {
+  try {
+    (void)number_of(*database_, "PRAGMA wal_checkpoint(TRUNCATE)");
+  } catch (const DatabaseError&) {
+    // What the log holds is lost then, as is said of every file that is gone.
+  }
 }
 
 std::uint64_t HistoryFile::size() const {

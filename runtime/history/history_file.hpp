@@ -39,9 +39,13 @@ class HistoryLock {
  public:
   /// Throws database::DatabaseError: Held where another process has it.
   explicit HistoryLock(const std::filesystem::path& file);
+  /// False where somebody deleted or moved that file: another task may hold one of its name.
+  [[nodiscard]] bool is_there() const { return identity_ && file_behind(path_) == identity_; }
 
  private:
+  std::filesystem::path path_;
   Descriptor held_{};
+  std::optional<FileIdentity> identity_{};
 };
 
 class HistoryFile {
@@ -54,6 +58,8 @@ class HistoryFile {
   [[nodiscard]] const std::string& aside() const { return aside_; }
   /// False where the name is another file's by now, or nobody's: what is written would be lost.
   [[nodiscard]] bool is_there() const;
+  /// Takes all rows over from the log into the file, as far as that can be: a file that is moved leaves its log behind.
+  void finish_log() noexcept;
   /// One transaction: all rows are on the disk, or none. `utc_ms`, a time for each row.
   void add(std::span<const Sample> rows, std::span<const std::int64_t> utc_ms);
   /// Deletes the oldest rows: what is beyond the size, and those from before `oldest_ms`. Gives up after some portions,

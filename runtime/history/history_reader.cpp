@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "runtime/history/tables.hpp"
+#include "support/atomic_file.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
 
@@ -39,8 +40,11 @@ Database opened(const std::filesystem::path& file) {
         break;
     }
   } catch (const DatabaseError& problem) {
+    // A reader makes a file of its name and -shm beside a history that a task writes.
+    const std::string of_machine = mend_of_machine(problem.reason());
     throw refuse(fmt::format("It cannot be opened: {}.", problem.what()),
-                 "let this user read it; or copy it, with the file of its name and -wal, to a folder of yours.");
+                 (of_machine.empty() ? "let this user read it, and write to its folder" : of_machine) +
+                     "; or copy it, with the file of its name and -wal, to a folder of yours.");
   }
   throw refuse("It is no history.", "name the file that [history] in the run file names.");
 }

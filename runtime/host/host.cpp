@@ -26,6 +26,7 @@
 #include "runtime/host/running_mqtt.hpp"
 #include "runtime/host/served_map.hpp"
 #include "runtime/host/service_notice.hpp"
+#include "runtime/host/working_folder.hpp"
 #include "runtime/modbus/server.hpp"
 #include "runtime/modbus/tls_renewal.hpp"
 #include "support/errors.hpp"
@@ -212,7 +213,7 @@ class CertificateCare {
 
 /// Until the cyclic thread is done; the service manager hears that this lives for as long as cycles go on.
 void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, const OutputClaims& claims, RunNotices& notices,
-              CertificateCare& certificate, ServedMap* registers, nanoseconds period) {
+              CertificateCare& certificate, ServedMap* registers, WorkingFolder& folder, nanoseconds period) {
   using Clock = std::chrono::steady_clock;
   const nanoseconds interval = service_watchdog() / 2;
   const nanoseconds longest = std::max<nanoseconds>(3 * period, milliseconds(500));
@@ -238,6 +239,9 @@ void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, const Output
     const auto now = Clock::now();
     if (now - drained > std::chrono::seconds(1)) {
       claims.drain();
+      if (const std::string line = folder.look(); !line.empty()) {
+        tell("Start", line);
+      }
       drained = now;
     }
     if (interval.count() == 0 || now - told < interval) {
@@ -286,7 +290,7 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
     inputs.push_back({.file = file, .named_by = named_by});
   };
   if (config.modbus) {
-    claim(config.modbus->lock_file, mend, config.modbus->place, "[modbus] lock_file");
+    claim(config.modbus->lock_file, mend, config.modbus->lock_place, "[modbus] lock_file");
   }
   if (config.retain) {
     const RetainFolder folder(config.retain->folder);
@@ -302,7 +306,7 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
   }
   if (config.mqtt && !config.mqtt->file.empty()) {
     for (const char* const ending : {"", "-wal", "-shm"}) {
-      claim(config.mqtt->file + ending, mend, config.mqtt->place, "[mqtt] file");
+      claim(config.mqtt->file + ending, mend, config.mqtt->file_place, "[mqtt] file");
     }
   }
   if (config.trace) {
@@ -321,6 +325,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   if (config.trace) {
     config.trace->waits = options.virtual_time;
   }
+  WorkingFolder folder(names_relative_paths(config));
   stop_asked.store(false);
   (void)std::signal(SIGTERM, ask_to_stop);
   (void)std::signal(SIGINT, ask_to_stop);
@@ -391,6 +396,9 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   std::unique_ptr<Retainer> retainer;
   if (retained) {
     retained->put_aside();
+    if (const std::string loss = retained->loss(); !loss.empty()) {
+      tell("Retain", loss);
+    }
     retainer = std::make_unique<Retainer>(retained->folder(), program, retained->recovery(), retained->after_reset(),
                                           retained->inputs());
     tell_of_what_is_left(retained->left());
@@ -431,7 +439,8 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     if (change) {
       change->begin(retainer.get(), trace.get(), registers.get());
     }
-    wait_for(cyclic, task, guard.get(), claims, notices, certificate, registers.get(), nanoseconds(shape.period));
+    wait_for(cyclic, task, guard.get(), claims, notices, certificate, registers.get(), folder,
+             nanoseconds(shape.period));
     end = cyclic.end();
     if (change) {
       change->end();

@@ -11,4 +11,7 @@ namespace hysteron::runtime {
 /// is there. Before anything of it is made.
 [[nodiscard]] std::string new_places(const RunConfig& config);
 
+/// Whether it names anything that is written by a relative path.
+[[nodiscard]] bool names_relative_paths(const RunConfig& config);
+
 }  // namespace hysteron::runtime

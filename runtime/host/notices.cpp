@@ -70,7 +70,17 @@ void tell(std::string_view from, const std::string& line, Weight weight) {
   }
 }
 
+void WriteNotices::tell_remarks() {
+  for (const std::string& line : retainer_ == nullptr ? std::vector<std::string>{} : retainer_->remarks().lines()) {
+    tell("Retain", line);
+  }
+  for (const std::string& line : trace_ == nullptr ? std::vector<std::string>{} : trace_->remarks().lines()) {
+    tell("Trace", line);
+  }
+}
+
 void WriteNotices::look() {
+  tell_remarks();
   if (const std::string problem = retainer_ == nullptr ? "" : retainer_->problem(); problem.empty() == told_retain_) {
     told_retain_ = !told_retain_;
     tell("Retain",
@@ -248,6 +258,7 @@ void RunNotices::look() {
 void RunNotices::last_look() {
   look_at_forces(ForceNotices::Clock::now() + pace_of_lines);
   look_beside();
+  writes_.tell_remarks();
 }
 
 void RunNotices::look_at_forces(ForceNotices::Clock::time_point now) {

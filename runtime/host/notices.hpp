@@ -34,17 +34,19 @@ void tell(std::string_view from, const std::string& line, Weight weight = Weight
 class WriteNotices {
  public:
   /// Each may be null.
-  WriteNotices(const Retainer* retainer, const Trace* trace) : retainer_(retainer), trace_(trace) {}
+  WriteNotices(Retainer* retainer, Trace* trace) : retainer_(retainer), trace_(trace) {}
 
   /// To be called as time goes by.
   void look();
+  /// What is to be told beside that, of files that somebody deleted.
+  void tell_remarks();
   /// For the status line at the end, each beginning with a semicolon; empty where all is on the disk. After both are
   /// finished.
   [[nodiscard]] std::string at_the_end() const;
 
  private:
-  const Retainer* retainer_;
-  const Trace* trace_;
+  Retainer* retainer_;
+  Trace* trace_;
   bool told_retain_ = false;
   bool told_trace_ = false;
 };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/task/staged_parameters.hpp"
+#include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::runtime {
@@ -15,12 +16,32 @@ namespace {
 
 constexpr std::size_t most_names = 3;
 
-[[noreturn]] void refuse_folder(const RetainConfig& config, const std::string& problem) {
-  throw InputError(
-      error::unusable_retain_folder, config.place,
-      fmt::format("Values cannot be retained in {}: {}.", config.folder, problem),
-      "give this user the right to read and write it, remove what is in its way, or name another folder; one "
-      "that is missing is made.");
+[[noreturn]] void refuse_folder(const RetainConfig& config, const std::system_error& problem) {
+  const std::string of_machine = mend_of_machine(problem.code().value());
+  const bool is_of_rights = problem.code() == std::errc::permission_denied;
+  throw InputError(error::unusable_retain_folder, config.place,
+                   fmt::format("Values cannot be retained in {}: {}.", config.folder, problem.what()),
+                   !of_machine.empty() ? of_machine + ", or name another folder."
+                   : is_of_rights      ? "give this user the right to read and write it, or name another folder."
+                                       : "remove what is in its way, or name another folder; one that is missing is "
+                                         "made.");
+}
+
+std::string mend_of(const Recovery& recovery, const RetainConfig& config) {
+  const std::string cold = "write mismatch = \"cold\", which puts the files aside";
+  switch (recovery.refusal) {
+    case RetainRefusal::damaged:
+      return fmt::format("put copies of retain_a and retain_b back into {}, or {}; and see to the disk.", config.folder,
+                         cold);
+    case RetainRefusal::not_finite:
+      return fmt::format("save the parameters by `hysteron retained {} --out P.toml`, and {}.", config.folder, cold);
+    case RetainRefusal::unfit:
+      return fmt::format("give others by `hysteron retained {} --set P.toml`, or {}.", config.folder, cold);
+    case RetainRefusal::of_another:
+    case RetainRefusal::none:
+      break;
+  }
+  return fmt::format("run the diagram that they are of, name another folder, or {}.", cold);
 }
 
 std::string names_text(const std::vector<std::string>& names) {
@@ -61,13 +82,10 @@ RetainedState::RetainedState(const RetainConfig& config, StepProgram& program, s
                        fmt::format("Another task that runs retains its values in {}.", config.folder),
                        "end that task first, or name another folder.");
     }
-    refuse_folder(config, problem.what());
+    refuse_folder(config, problem);
   }
   if (!recovery_.refused.empty()) {
-    throw InputError(
-        error::retained_values_unfit, config.place, recovery_.refused,
-        "run the diagram that they are of, name another folder, or write mismatch = \"cold\", which puts the files "
-        "aside.");
+    throw InputError(error::retained_values_unfit, config.place, recovery_.refused, mend_of(recovery_, config));
   }
   if (recovery_.values) {
     const RetainedValues& values = *recovery_.values;
@@ -128,6 +146,10 @@ void RetainedState::carry(StepProgram& program, std::span<const double> given, c
                          carried.parameters_taken, shape.parameters.size(), carried.states_taken, shape.state.size());
   }
   told_ += not_as_given(program, given);
+}
+
+std::string RetainedState::loss() const {
+  return recovery_.loss.empty() ? "" : fmt::format("{}: {}", config_.folder, recovery_.loss);
 }
 
 void RetainedState::put_aside() {

@@ -32,6 +32,8 @@ class RetainedState {
   [[nodiscard]] const std::string& told() const { return told_; }
   /// What was retained by another version of the diagram and is not taken over, each with its reason.
   [[nodiscard]] const std::vector<std::string>& left() const { return left_; }
+  /// What was retained and is lost, for standard error; empty where nothing is.
+  [[nodiscard]] std::string loss() const;
   [[nodiscard]] const std::vector<std::byte>& after_reset() const { return after_reset_; }
   /// Before anything is written: files that do not fit and are not wanted are renamed, those carried over are copied.
   /// What cannot be yet is left to the Retainer.

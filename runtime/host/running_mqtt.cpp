@@ -10,6 +10,7 @@
 #include "runtime/modbus/tls_context.hpp"
 #include "runtime/mqtt/json_dialect.hpp"
 #include "runtime/mqtt/sparkplug.hpp"
+#include "support/byte_order_mark.hpp"
 #include "support/errors.hpp"
 #include "support/text_file.hpp"
 
@@ -28,7 +29,7 @@ std::string read_password(const MqttConfig& config) {
                      fmt::format("Others than its owner may read or change the password file {}.", file),
                      fmt::format("chmod 600 {}; if anybody could have read it, have the password changed.", file));
   }
-  std::string text = read_text_file(file);
+  std::string text = without_mark(read_text_file(file));
   while (text.ends_with('\n') || text.ends_with('\r')) {
     text.pop_back();
   }

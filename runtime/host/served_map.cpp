@@ -13,6 +13,7 @@
 #include "runtime/host/notices.hpp"
 #include "runtime/modbus/address_text.hpp"
 #include "support/atomic_file.hpp"
+#include "support/byte_order_mark.hpp"
 #include "support/text_file.hpp"
 
 namespace hysteron::runtime {
@@ -66,14 +67,16 @@ modbus::RegisterMap map_with(const ModbusConfig& config, const std::string& titl
                                             .lock_text = std::move(lock_text)});
 }
 
-constexpr std::chrono::seconds between_tries{10};
+/// At the lock file: whether it is there, and, where it could not be written, whether it can be now.
+constexpr std::chrono::seconds between_looks_at_lock{10};
 
 PlannedMap planned_map(const ModbusConfig& config, const std::string& title, std::span<const Point> points) {
   // Where that cannot be told, reading it says why.
   std::error_code unknown;
   const bool has_lock =
       !config.lock_file.empty() && (std::filesystem::exists(config.lock_file, unknown) || unknown != std::error_code{});
-  std::string before = has_lock ? placed(config.place, [&] { return read_text_file(config.lock_file); }) : "";
+  std::string before =
+      has_lock ? placed(config.lock_place, [&] { return without_mark(read_text_file(config.lock_file)); }) : "";
   const bool was_emptied = has_lock && has_no_address(before);
   if (!has_lock || was_emptied) {
     before = config.first_addresses;
@@ -98,7 +101,7 @@ PlannedMap planned_map(const RunConfig& config, const StepProgram& program) {
 
 void write_lock_file(const ModbusConfig& config, const std::string& text) {
   if (!text.empty()) {
-    placed(config.place, [&] { write_file_atomically(config.lock_file, text); });
+    placed(config.lock_place, [&] { write_file_atomically(config.lock_file, text); });
   }
 }
 
@@ -154,7 +157,7 @@ ServedMap::ServedMap(const RunConfig& config, std::string title, Task& task,
                             .client_lost = [&task](bool lost) { task.client_lost(lost); },
                             .tls = tls,
                             .tell = [](const std::string& line) { tell("Modbus", line); },
-                            .place = modbus.place});
+                            .place = modbus.listen_place});
   if (const std::string problem = try_to_write(planned.lock_text); !problem.empty()) {
     // It keeps no task from starting; without another edit, the next start has the same addresses.
     tell("Modbus", problem + " It is tried again every 10 s: edit nothing before.");
@@ -228,31 +231,52 @@ std::string ServedMap::try_to_write(const std::string& lock_text) {
   } catch (const DiskTroubleError& trouble) {
     problem = trouble.diagnostics().all().front().cause;
   }
-  const std::scoped_lock lock(unwritten_mutex_);
-  unwritten_ = problem.empty() ? "" : lock_text;
-  try_at_ = std::chrono::steady_clock::now() + between_tries;
-  door_->shortage(Shortage::lock, !unwritten_.empty());
+  keep_unwritten(problem.empty() ? "" : lock_text);
   return problem;
+}
+
+void ServedMap::keep_unwritten(std::string lock_text) {
+  const std::scoped_lock lock(unwritten_mutex_);
+  unwritten_ = std::move(lock_text);
+  look_at_ = std::chrono::steady_clock::now() + between_looks_at_lock;
+  door_->shortage(Shortage::lock, !unwritten_.empty());
 }
 
 void ServedMap::look(std::chrono::steady_clock::time_point now) {
   std::string text;
   {
     const std::scoped_lock lock(unwritten_mutex_);
-    if (unwritten_.empty() || now < try_at_) {
+    if (now < look_at_) {
       return;
     }
+    look_at_ = now + between_looks_at_lock;
     text = unwritten_;
   }
+  const std::string& file = config_->modbus->lock_file;
+  std::error_code unknown;
+  const bool is_deleted = text.empty() && !file.empty() && !std::filesystem::exists(file, unknown) && !unknown;
+  if (is_deleted) {
+    text = modbus::lock_text(*server_->map());
+  }
+  if (text.empty()) {
+    return;
+  }
+  std::string problem;
   try {
-    if (try_to_write(text).empty()) {
-      tell("Modbus", fmt::format("the addresses of the registers are in {} now.", config_->modbus->lock_file),
-           Weight::notice);
-    }
+    problem = try_to_write(text);
   } catch (const InputError& refused) {
-    tell("Modbus", refused.diagnostics().all().front().cause + " It is not tried again.");
-    const std::scoped_lock lock(unwritten_mutex_);
-    unwritten_.clear();
+    problem = refused.diagnostics().all().front().cause;
+    keep_unwritten(text);
+  }
+  if (problem.empty()) {
+    tell("Modbus",
+         is_deleted ? fmt::format("{} was deleted, and is there again: registers keep their addresses. To give them "
+                                  "anew, delete it while no task runs.",
+                                  file)
+                    : fmt::format("the addresses of the registers are in {} now.", file),
+         is_deleted ? Weight::warning : Weight::notice);
+  } else if (is_deleted) {
+    tell("Modbus", fmt::format("{} was deleted. {} It is tried again every 10 s: edit nothing before.", file, problem));
   }
 }
 

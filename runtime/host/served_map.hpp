@@ -60,12 +60,13 @@ class ServedMap {
   /// Serves that map from the next request on, and writes the lock file. Where that cannot be written, a line says so.
   void show(NextMap next);
   /// To be called as time goes by, from a thread that is not the task's: a lock file that could not be written is tried
-  /// again.
+  /// again, and one that somebody deleted is written again.
   void look(std::chrono::steady_clock::time_point now);
 
  private:
   /// Empty, or why it is not written; then it is tried again.
   std::string try_to_write(const std::string& lock_text);
+  void keep_unwritten(std::string lock_text);
 
   const RunConfig* config_;
   std::string title_;
@@ -73,7 +74,7 @@ class ServedMap {
   std::size_t first_points_;  ///< so many points there are without an online change
   std::mutex unwritten_mutex_{};
   std::string unwritten_{};  ///< the text of the lock file; empty where it is on the disk
-  std::chrono::steady_clock::time_point try_at_{};
+  std::chrono::steady_clock::time_point look_at_{};
   std::unique_ptr<modbus::Server> server_;
 };
 

@@ -312,7 +312,7 @@ class Placer {
     const RegisterType type = formats_[index].type;
     const auto parsed = parse_address(given.address);
     if (!parsed) {
-      diagnostics_.error(error::malformed_address, given.place, fmt::format("{} is no address.", given.address),
+      diagnostics_.error(error::malformed_address, given.address_place, fmt::format("{} is no address.", given.address),
                          "write %QX0.0 to %QX99.7, %IX, %IW0 to %IW1023, %QW, %MW, %MD, %ML, or an area and a number: "
                          "holding 16, input 3, coil 0, discrete 7; of a bit in a register: holding 16.3");
       return std::nullopt;
@@ -320,7 +320,7 @@ class Placer {
     Stretch at = parsed->at;
     const auto width = static_cast<std::uint32_t>(registers_of(type));
     if (!fits(index, at) || (!parsed->any_width && at.count != width)) {
-      diagnostics_.error(error::unfit_address, given.place,
+      diagnostics_.error(error::unfit_address, given.address_place,
                          fmt::format("{} is {}{} and does not fit {}.", point.name,
                                      point.writable ? "a writable " : "a ", name_of(type), given.address),
                          fitting_address(point.writable, type, at));
@@ -328,7 +328,7 @@ class Placer {
     }
     at.count = width;
     if (at.address + at.count > size_of(at.area)) {
-      diagnostics_.error(error::no_address_left, given.place,
+      diagnostics_.error(error::no_address_left, given.address_place,
                          fmt::format("{} would end at {}, behind the last address of its area.", point.name,
                                      text_of({at.area, at.address + at.count - 1, 1})),
                          fmt::format("stay below {}", size_of(at.area)));

@@ -80,6 +80,7 @@ struct GivenRegister {
   std::string address{};  ///< empty: where any other would lie
   std::optional<GivenFormat> format{};
   Place place{};
+  Place address_place{};
 };
 
 struct MapRequest {

@@ -88,7 +88,7 @@ void MqttSender::open_file() {
   } catch (const OutboxOfAnother& problem) {
     file_failed(problem.what(), "Each task needs a file of its own: write another one under [mqtt]");
   } catch (const database::DatabaseError& problem) {
-    file_failed(problem.what());
+    file_failed(problem);
   }
 }
 
@@ -114,14 +114,18 @@ void MqttSender::keep(std::int64_t before) {
       remarks_.say("rows that wait are on the disk again.");
     }
   } catch (const database::DatabaseError& problem) {
-    file_failed(problem.what());
+    file_failed(problem);
     if (!problem.is_passing()) {
       file_.reset();  // it is opened anew, and put aside
     }
   }
 }
 
-void MqttSender::file_failed(const std::string& problem, const char* mend) {
+void MqttSender::file_failed(const database::DatabaseError& problem) {
+  file_failed(problem.what(), database::way_out(problem));
+}
+
+void MqttSender::file_failed(const std::string& problem, const std::string& mend) {
   keep_at_ = time_.steady() + file_retry;
   if (!std::exchange(is_file_told_, true)) {
     remarks_.say(

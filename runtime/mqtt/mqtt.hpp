@@ -58,7 +58,8 @@ class MqttSender {
   void leave_file_that_is_gone();
   /// `before`: rows that were added until then.
   void keep(std::int64_t before);
-  void file_failed(const std::string& problem, const char* mend = "Clear what is in the way there");
+  void file_failed(const std::string& problem, const std::string& mend);
+  void file_failed(const database::DatabaseError& problem);
   void set_fault(MqttFault fault);
   void lose(std::uint64_t rows);
   void serve(std::chrono::milliseconds wait, int wake);

@@ -5,13 +5,14 @@ namespace {
 
 constexpr std::string_view interpreted = "-interpreter";
 constexpr std::string_view compiled = "-compiled";
+constexpr std::string_view of_float32 = "-float32";
 
 }  // namespace
 
 std::string layout_text(std::string_view diagram, bool is_compiled, bool is_float32) {
   std::string text(diagram);
   text += is_compiled ? compiled : interpreted;
-  text += is_float32 ? "-float32" : "";
+  text += is_float32 ? of_float32 : "";
   return text;
 }
 
@@ -22,6 +23,11 @@ std::string diagram_of(std::string layout) {
     }
   }
   return layout;
+}
+
+LayoutEngine engine_in(std::string_view layout) {
+  return {.is_interpreted = layout.find(interpreted) != std::string_view::npos,
+          .is_float32 = layout.ends_with(of_float32)};
 }
 
 }  // namespace hysteron::runtime

@@ -12,4 +12,13 @@ namespace hysteron::runtime {
 /// A layout without its engine: engines of one diagram have the same values, which lie in other bytes.
 [[nodiscard]] std::string diagram_of(std::string layout);
 
+/// What a layout says of how its program is stepped.
+struct LayoutEngine {
+  bool is_interpreted = false;
+  bool is_float32 = false;
+
+  bool operator==(const LayoutEngine&) const = default;
+};
+[[nodiscard]] LayoutEngine engine_in(std::string_view layout);
+
 }  // namespace hysteron::runtime

@@ -180,8 +180,13 @@ Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy p
     recovery.by_name = !is_taken;
     if (!unsound.empty()) {
       recovery.note = "in one retain slot " + unsound + " was not finite; the other was taken";
+      recovery.loss = "in one slot " + unsound + " is not finite. The other was taken";
     } else if (any_broken) {
       recovery.note = "one retain slot was broken; the other was taken";
+      recovery.loss = "one slot is damaged: see to the disk. The other was taken";
+    }
+    if (any_broken) {
+      recovery.loss += ", state " + std::to_string(recovery.sequence) + ": what was set after it may be lost.";
     }
     recovery.aside.at(newest) = is_edited;
     return recovery;
@@ -197,9 +202,16 @@ Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy p
                                                  : "No retain slot is whole.";
   if (policy != MismatchPolicy::cold) {
     recovery.refused = what;
+    recovery.refusal = !unfit.empty()     ? RetainRefusal::unfit
+                       : is_whole         ? RetainRefusal::of_another
+                       : !unsound.empty() ? RetainRefusal::not_finite
+                                          : RetainRefusal::damaged;
     return recovery;
   }
   recovery.note = "started cold; the retained files were put aside";
+  if (!is_whole) {  // to leave another diagram's is what was asked for
+    recovery.loss = what + " The task begins without them, and the files are put aside.";
+  }
   recovery.next_slot = 0;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     recovery.aside.at(i) = slots[i].status != SlotStatus::missing;
@@ -300,6 +312,9 @@ void Retainer::write_newest() {
     saved_commits_.store(values.commits, std::memory_order_relaxed);
   } else {
     failures_.fetch_add(1, std::memory_order_relaxed);
+  }
+  if (std::string remark = files_->take_remark(); !remark.empty()) {
+    remarks_.say(std::move(remark));
   }
   const std::scoped_lock lock(mutex_);
   is_failing_.store(!problem.empty(), std::memory_order_relaxed);

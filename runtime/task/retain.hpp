@@ -17,9 +17,11 @@
 #include <span>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "runtime/task/exchange.hpp"
+#include "runtime/task/remarks.hpp"
 #include "runtime/task/step_program.hpp"
 #include "support/descriptor.hpp"
 
@@ -65,6 +67,8 @@ class RetainFiles {
   virtual std::string put_aside(std::size_t slot) = 0;
   /// A copy of it there, the slot left as it is. Empty, or why it failed.
   virtual std::string copy_aside(std::size_t slot) = 0;
+  /// What became of the files beside that, to be told once; mostly empty.
+  [[nodiscard]] virtual std::string take_remark() { return {}; }
 };
 
 /// Files retain_a and retain_b in a folder.
@@ -75,7 +79,8 @@ class RetainFolder final : public RetainFiles {
   RetainFolder& operator=(const RetainFolder&) = delete;
   ~RetainFolder() override = default;
   /// Makes the folder where it is missing, and holds it against a second task for as long as this lives. Where the disk
-  /// has no room for it, it is made and held by the first state that finds some. Throws
+  /// has no room for it, it is made and held by the first state that finds some; so is another one where somebody
+  /// deletes or moves it. Throws
   /// std::system_error where it cannot be written to; std::errc::resource_unavailable_try_again where another task
   /// holds it.
   void open();
@@ -83,11 +88,18 @@ class RetainFolder final : public RetainFiles {
   std::string write(std::size_t slot, std::span<const std::byte> bytes) override;
   std::string put_aside(std::size_t slot) override;
   std::string copy_aside(std::size_t slot) override;
+  [[nodiscard]] std::string take_remark() override { return std::exchange(remark_, {}); }
   [[nodiscard]] std::filesystem::path path_of(std::size_t slot) const;
 
  private:
+  /// Whether the folder of that name is another one than was held, or is gone.
+  [[nodiscard]] bool is_taken_away() const;
+  std::string write_slot(std::size_t slot, std::span<const std::byte> bytes);
+
   std::filesystem::path folder_;
   Descriptor held_{};
+  bool was_taken_away_ = false;
+  std::string remark_{};
 };
 
 /// What a start does with the values of another diagram, or of an edited one. Those of the same diagram by another
@@ -98,11 +110,22 @@ enum class MismatchPolicy : std::uint8_t {
   carry,   ///< takes over by name what is still the same, and keeps a copy of the files
 };
 
+/// Why a task must not start with what is retained.
+enum class RetainRefusal : std::uint8_t {
+  none,
+  of_another,  ///< diagram, or of other units
+  unfit,       ///< its parameters cannot be
+  not_finite,  ///< no slot has a state of numbers
+  damaged,     ///< no slot is whole
+};
+
 struct Recovery {
   std::optional<RetainedValues> values{};
-  bool by_name = false;         ///< the values are of another layout, to be carried over
-  std::string refused{};        ///< why the task must not start, a sentence; empty where it may
+  bool by_name = false;  ///< the values are of another layout, to be carried over
+  RetainRefusal refusal = RetainRefusal::none;
+  std::string refused{};        ///< the same, a sentence
   std::string note{};           ///< what a reader of the status line should know
+  std::string loss{};           ///< what was retained and is lost, a sentence for standard error
   std::uint64_t sequence = 0;   ///< of the newest slot
   std::size_t next_slot = 0;    ///< where to write first
   std::array<bool, 2> aside{};  ///< the slots to be put aside before anything is written; copied, if `by_name`
@@ -176,6 +199,8 @@ class Retainer {
   [[nodiscard]] bool is_failing() const noexcept { return is_failing_.load(std::memory_order_relaxed); }
   /// Why the newest state is not on the disk; empty where it is, or none was offered. From any thread.
   [[nodiscard]] std::string problem() const;
+  /// What is to be told of the files beside that.
+  [[nodiscard]] Remarks& remarks() noexcept { return remarks_; }
   /// Writes what was offered last, and ends.
   void finish();
 
@@ -197,6 +222,7 @@ class Retainer {
   std::atomic<std::uint64_t> saved_commits_{0};
   mutable std::mutex mutex_;  ///< never taken by the cyclic thread
   std::string problem_{};
+  Remarks remarks_{};
   std::atomic<bool> stop_{false};
   std::thread writer_;
 };

@@ -1,6 +1,7 @@
 // The slots as files: written aside, flushed, renamed, and the folder flushed, so that the rename is on the disk too.
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +18,7 @@
 
 #include "runtime/task/retain.hpp"
 #include "support/atomic_file.hpp"
+#include "support/file_identity.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -93,19 +95,38 @@ std::optional<std::vector<std::byte>> RetainFolder::read(std::size_t slot) {
   }
 }
 
+bool RetainFolder::is_taken_away() const {
+  struct stat mine {};
+  return held_.is_open() && (::fstat(held_.number(), &mine) != 0 || file_behind(folder_) != identity_of(mine));
+}
+
 std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> bytes) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder_, failed);
-  if (failed) {
-    return folder_.string() + ": " + failed.message();
+  if (is_taken_away()) {
+    held_ = {};
+    was_taken_away_ = true;
   }
   if (!held_.is_open()) {
+    std::error_code failed;
+    std::filesystem::create_directories(folder_, failed);
+    if (failed) {
+      return folder_.string() + ": " + failed.message();
+    }
     try {
       open();
     } catch (const std::system_error& refused) {
-      return refused.what();
+      return refused.code() == std::errc::resource_unavailable_try_again
+                 ? folder_.string() + ": another task retains its values there by now"
+                 : refused.what();
     }
   }
+  std::string problem = write_slot(slot, bytes);
+  if (problem.empty() && std::exchange(was_taken_away_, false)) {
+    remark_ = folder_.string() + " was deleted or moved. It is there again, with the newest state.";
+  }
+  return problem;
+}
+
+std::string RetainFolder::write_slot(std::size_t slot, std::span<const std::byte> bytes) {
   const auto path = path_of(slot);
   const auto fresh = std::filesystem::path(path).concat(".new");
   {

@@ -39,7 +39,7 @@ constexpr std::array statuses{
     Status{"task.worst_cycle", PointType::uint64, "1", "the cycle of the latest start"},
     count_of("task.commits", "sets of parameters applied, and on the disk where they are retained"),
     Status{"task.retained", PointType::uint64, "1", "sequence number of the newest retained state"},
-    count_of("task.trace_dropped", "steps that the trace had no room for"),
+    count_of("task.trace_dropped", "steps that are in no trace: it had no room, or was deleted"),
     count_of("task.write_failures", "writes of the trace or of retained values that failed"),
     count_of("task.not_taken", "values of devices beyond the limits of their input, or none"),
     count_of("task.faults", "faults that began"),

@@ -1,11 +1,13 @@
 #include "runtime/task/trace.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstring>
-#include <limits>
 #include <system_error>
+#include <utility>
 
 namespace hysteron::runtime {
 namespace {
@@ -41,6 +43,27 @@ std::uint64_t memory_before(const TraceTrigger& trigger, std::size_t inputs, std
   const std::uint64_t step = record_head + length_of_step(inputs, outputs);
   return 2 * std::max<std::uint64_t>(1, trigger.before) * step;
 }
+
+namespace {
+
+constexpr std::uint64_t end_bytes = record_head + 2 * sizeof(std::uint64_t);
+
+std::uint64_t bytes_of_step(const TraceHead& head) {
+  return record_head + length_of_step(head.inputs.size(), head.outputs.size());
+}
+
+std::uint64_t length_of_state(const TraceHead& head) {
+  return record_head + sizeof(std::uint64_t) + sizeof(double) * head.parameters.size() + head.state_size;
+}
+
+/// From a state up to the next, so that neither states nor what a file has beyond its size take much.
+std::uint64_t steps_between_states(const TraceSettings& settings, const TraceHead& head) {
+  const std::uint64_t bytes = std::max<std::uint64_t>(settings.file_bytes / 8, head.state_size);
+  const std::uint64_t steps = std::max<std::uint64_t>(1, bytes / bytes_of_step(head));
+  return settings.trigger ? std::clamp<std::uint64_t>(settings.trigger->before, 1, steps) : steps;
+}
+
+}  // namespace
 
 TraceSelector::TraceSelector(const TraceHead& head, std::optional<TraceTrigger> trigger)
     : inputs_(head.inputs.size()),
@@ -145,10 +168,10 @@ Trace::Trace(const TraceSettings& settings, const StepProgram& program)
       ring_(settings.ring_bytes),
       selector_(head_of(program), settings.trigger),
       file_(settings.file, settings.files - 1),
-      state_every_(settings.trigger ? std::max<std::uint64_t>(1, settings.trigger->before)
-                                    : std::numeric_limits<std::uint64_t>::max()),
+      state_every_(steps_between_states(settings, head_of(program))),
       waits_(settings.waits),
-      file_bytes_(settings.file_bytes) {
+      file_bytes_(settings.file_bytes),
+      segment_bytes_(length_of_state(head_of(program)) + state_every_ * bytes_of_step(head_of(program)) + end_bytes) {
   begin_first();
   writer_ = std::thread([this] {
     while (!stop_.load(std::memory_order_relaxed)) {
@@ -168,7 +191,7 @@ void Trace::begin_first() {
   }
   file_.take_back(written);
   file_.give_back();
-  cut(0);
+  cut(0, file_.problem());
 }
 
 void Trace::finish() {
@@ -262,10 +285,23 @@ void Trace::write_out(bool last) {
   selector_.feed(records, out);
   write_records(out);
   if (last) {
+    if (!selector_.finished() && lose_deleted() > 0) {
+      cut(0, file_.file().string() + ": somebody deleted it");
+    }
     write_end();
   } else if (needs_next() && !selector_.finished()) {
-    wants_state_.store(true, std::memory_order_relaxed);
+    if (!selector_.waits()) {
+      wants_state_.store(true, std::memory_order_relaxed);
+    } else if (is_cut() || file_.is_taken_away()) {
+      (void)begin_next();  // no state is written before the trigger fires, and until then the name is to be held
+    }
   }
+}
+
+std::uint64_t Trace::lose_deleted() {
+  const std::uint64_t lost = file_.is_deleted() ? std::exchange(kept_, 0) : 0;
+  dropped_.fetch_add(lost, std::memory_order_relaxed);
+  return lost;
 }
 
 void Trace::write_end() {
@@ -285,7 +321,8 @@ bool Trace::needs_next() const {
   if (is_cut()) {
     return std::chrono::steady_clock::now() >= next_try_;
   }
-  return file_.size() >= file_bytes_ || (file_.size() > 0 && file_.is_taken_away());
+  const bool is_full = kept_ > 0 && file_.size() + segment_bytes_ > file_bytes_;
+  return is_full || (file_.size() > 0 && file_.is_taken_away());
 }
 
 bool Trace::begin_next() {
@@ -293,14 +330,19 @@ bool Trace::begin_next() {
   if (!is_cut()) {
     write_end();
   }
+  const std::uint64_t deleted = lose_deleted();
   if (!file_.begin_next()) {
-    cut(0);
+    cut(0, file_.problem());
     return false;
   }
   if (const std::size_t written = file_.write(head_); written < head_.size()) {
     file_.take_back(written);
-    cut(0);
+    cut(0, file_.problem());
     return false;
+  }
+  if (deleted > 0) {
+    remarks_.say(fmt::format("{} was deleted, or moved to another disk, and {} steps with it. Another file is begun.",
+                             file_.file().string(), deleted));
   }
   file_.flush();
   kept_ = 0;
@@ -350,17 +392,17 @@ void Trace::write_part(std::string_view records) {
   }
   if (written < records.size()) {
     file_.take_back(written - whole);
-    cut(lost);
+    cut(lost, file_.problem());
   }
 }
 
 /// From here on nothing is written until another file can be begun.
-void Trace::cut(std::uint64_t lost) {
+void Trace::cut(std::uint64_t lost, const std::string& problem) {
   dropped_.fetch_add(lost, std::memory_order_relaxed);
   if (!is_cut()) {
     next_try_ = std::chrono::steady_clock::now() + time_between_tries;
     const std::scoped_lock lock(mutex_);
-    problem_ = file_.problem();
+    problem_ = problem;
     cut_.store(true, std::memory_order_release);
   }
 }

@@ -5,8 +5,10 @@
 // begins another file. What the ring has no room for is counted, exactly, and
 // the next state makes what follows replayable again. Where the file takes no more, the trace ends with its last whole
 // record, and every step from there on is counted as dropped; now and then another file is tried, and begun where it
-// can be. A file that has grown to its size is followed by another, which begins at a state, so that each can be
-// replayed by itself; the oldest goes.
+// can be. A state comes at least for each eighth of a file, so that a file keeps its size however far its writer is
+// behind. A file that has grown to its size is followed by another, which begins at a state, so that each can be
+// replayed by itself; the oldest goes. So is one that somebody has moved, and one that somebody has deleted: what was
+// in that is told, and counted as dropped.
 #pragma once
 
 #include <atomic>
@@ -23,6 +25,7 @@
 #include <vector>
 
 #include "runtime/task/byte_ring.hpp"
+#include "runtime/task/remarks.hpp"
 #include "runtime/task/trace_file.hpp"
 #include "runtime/task/trace_output.hpp"
 
@@ -60,6 +63,8 @@ class TraceSelector {
   /// Whole records, in order. What is to be written is appended.
   void feed(std::span<const std::byte> records, std::string& out);
   [[nodiscard]] bool finished() const { return finished_; }
+  /// Whether it waits for the trigger, and writes nothing until that fires.
+  [[nodiscard]] bool waits() const { return trigger_ && !fired_; }
 
  private:
   void feed_one(TraceKind kind, std::string_view record, std::string& out);
@@ -122,6 +127,8 @@ class Trace {
   [[nodiscard]] bool is_cut() const noexcept { return cut_.load(std::memory_order_acquire); }
   /// Why it was last cut; empty where it never was.
   [[nodiscard]] std::string problem() const;
+  /// What is to be told of the file beside that, as that somebody deleted it.
+  [[nodiscard]] Remarks& remarks() noexcept { return remarks_; }
   /// Whether the next step begins another file.
   [[nodiscard]] bool wants_next() const noexcept { return wants_state_.load(std::memory_order_relaxed); }
   /// Writes what is left, and the end. No step comes after it.
@@ -137,8 +144,10 @@ class Trace {
   void write_part(std::string_view records);
   [[nodiscard]] bool needs_next() const;
   bool begin_next();
+  /// The steps of a file that somebody deleted, counted as dropped.
+  std::uint64_t lose_deleted();
   void write_end();
-  void cut(std::uint64_t lost);
+  void cut(std::uint64_t lost, const std::string& problem);
 
   TraceProgram program_;  ///< of the cyclic thread
   std::string head_;      ///< of the writer
@@ -152,6 +161,7 @@ class Trace {
   bool waits_;
   std::atomic<std::uint64_t> dropped_{0};
   std::uint64_t file_bytes_;
+  std::uint64_t segment_bytes_;       ///< from a state up to the next, at the most
   std::uint64_t kept_ = 0;            ///< steps in the file; of the writer, as the next
   bool is_other_ = false;             ///< what follows is of another program than the file
   std::uint64_t dropped_before_ = 0;  ///< when the file was begun
@@ -159,6 +169,7 @@ class Trace {
   std::atomic<bool> wants_state_{false};  ///< the next file begins at one
   mutable std::mutex mutex_;              ///< never taken by the cyclic thread
   std::string problem_{};
+  Remarks remarks_{};
   std::atomic<bool> cut_{false};
   std::atomic<bool> stop_{false};
   std::thread writer_;

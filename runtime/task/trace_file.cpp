@@ -3,7 +3,9 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
+#include "runtime/task/layout_text.hpp"
 #include "support/whole_number.hpp"
 
 namespace hysteron::runtime {
@@ -177,6 +179,12 @@ std::string text_of(const TraceHead& head) {
          std::string(trace_last_line_of_head) + "\n";
 }
 
+std::optional<TraceHead> trace_head(std::string_view bytes) {
+  TraceHead head;
+  std::string fault;
+  return read_head(bytes, head, fault) > 0 ? std::optional(std::move(head)) : std::nullopt;
+}
+
 std::string read_trace(std::string_view bytes, TraceHead& head,
                        const std::function<TraceVisitor(const TraceHead&)>& visit) {
   std::string fault;
@@ -224,7 +232,9 @@ std::string replay(std::string_view bytes, StepProgram& program, ReplayResult& r
   const auto visit = [&](const TraceHead& head) {
     TraceVisitor visitor;
     if (head.layout != program.shape().layout || head.state_size != program.state_size()) {
-      fault = "the trace is of another diagram (" + head.program + "), or was made by another way of running it";
+      fault = diagram_of(head.layout) == diagram_of(program.shape().layout)
+                  ? "the trace was recorded by another engine, whose state lies in other bytes"
+                  : "the trace is of another diagram, or of this one before an edit (" + head.program + ")";
       return visitor;
     }
     visitor.state = [&](std::uint64_t number, std::span<const double> parameters, std::span<const std::byte> state) {

@@ -23,6 +23,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -77,6 +78,9 @@ inline constexpr std::size_t record_head = 5;
 
 [[nodiscard]] TraceHead head_of(const StepProgram& program);
 [[nodiscard]] std::string text_of(const TraceHead& head);
+
+/// The head of a trace alone; nothing where it has none.
+[[nodiscard]] std::optional<TraceHead> trace_head(std::string_view bytes);
 
 /// What a reader of a trace is told, in order. What it does not want it leaves out.
 struct TraceVisitor {

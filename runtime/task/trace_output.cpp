@@ -149,7 +149,9 @@ bool TraceOutput::begin_next() {
   try {
     open_next();
   } catch (const std::system_error& failed) {
-    problem_ = failed.what();
+    problem_ = failed.code() == std::errc::resource_unavailable_try_again
+                   ? file_.string() + ": another task writes it by now"
+                   : failed.what();
     descriptor_ = before;
     (void)::flock(before, LOCK_EX | LOCK_NB);
     return false;
@@ -164,6 +166,11 @@ bool TraceOutput::is_taken_away() const {
   struct stat mine {};
   return ::fstat(descriptor_, &mine) != 0 || file_behind(file_) != identity_of(mine) ||
          static_cast<std::uint64_t>(mine.st_size) < size_;
+}
+
+bool TraceOutput::is_deleted() const {
+  struct stat mine {};
+  return descriptor_ >= 0 && ::fstat(descriptor_, &mine) == 0 && mine.st_nlink == 0;
 }
 
 TraceOutput::~TraceOutput() {

@@ -41,6 +41,9 @@ class TraceOutput {
   [[nodiscard]] std::uint64_t size() const { return size_; }
   /// Whether somebody else has moved or cut the file, as a rotation of logs does.
   [[nodiscard]] bool is_taken_away() const;
+  /// Whether it has no name any more, and what is in it is lost.
+  [[nodiscard]] bool is_deleted() const;
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   /// Why writing failed last, with the file's name; empty where it did not.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "runtime/modbus/allow_list.hpp"
+#include "support/byte_order_mark.hpp"
 #include "support/errors.hpp"
 #include "support/text_file.hpp"
 #include "support/whole_number.hpp"
@@ -82,7 +83,7 @@ std::string read_token(const std::string& file) {
   const auto refuse = [&](const std::string& cause, const std::string& mend) -> InputError {
     return {error::unfit_token_file, Place{.file = file}, cause, mend};
   };
-  std::string text = read_text_file(file);
+  std::string text = without_mark(read_text_file(file));
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0 || (status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
     throw refuse("Others than its owner may read or change the token file.", fmt::format("chmod 600 {}", file));

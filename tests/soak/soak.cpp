@@ -19,6 +19,7 @@
 #include "tests/runtime/task/scripted_loop.hpp"
 #include "tests/soak/ordinary_days.hpp"
 #include "tests/soak/rows.hpp"
+#include "tests/support/summarised_stderr.hpp"
 #include "tool/serve_program.hpp"
 
 namespace hysteron::soak {
@@ -157,6 +158,7 @@ Counted linked_sets(std::uint64_t count) {
 }
 
 Counted online_changes(std::uint64_t count) {
+  const test::SummarisedStderr summary;  // each change has its notice
   const auto result = rt::test::change_many_times(count);
   return {count,
           fmt::format("{} refused, {} sets committed meanwhile, the last {}; longest cycle {:.1f} us",

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
+#include <cerrno>
 #include <filesystem>
 
 #include "support/diagnostic.hpp"
@@ -92,6 +93,15 @@ TEST(AtomicFile, ANameThatIsTooLongIsNoMatterOfRoom) {
     EXPECT_EQ(refused.diagnostics().all().front().mend,
               "give it a shorter name; a generated file is named after its block.");
   }
+}
+
+/// What the machine lacks is no matter of the name.
+TEST(AtomicFile, WhatTheMachineLacksIsTheMend) {
+  EXPECT_EQ(mend_of_machine(ENOSPC), "make room on the disk");
+  EXPECT_TRUE(mend_of_machine(EROFS).starts_with("see to the disk: "));
+  EXPECT_TRUE(mend_of_machine(EMFILE).starts_with("let more files be open: "));
+  EXPECT_EQ(mend_of_machine(ENOENT), "");
+  EXPECT_EQ(mend_of_machine(0), "");
 }
 
 TEST(AtomicFile, ADeviceIsWrittenInPlaceAndStays) {

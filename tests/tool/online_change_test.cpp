@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -17,8 +18,10 @@
 
 #include "runtime/task/trace_file.hpp"
 #include "tests/support/error_page.hpp"
+#include "tests/support/scratch_folder.hpp"
 #include "tests/support/soon.hpp"
 #include "tests/tool/workbench.hpp"
+#include "tool/change_channel.hpp"
 #include "tool/serve_program.hpp"
 
 namespace hysteron {
@@ -166,6 +169,8 @@ TEST(OnlineChangeCommand, FilesThatRunAlreadyLeaveVersionAndWayBack) {
   const StageBench bench;
   Served task(bench, "--engine interpreter");
   ASSERT_TRUE(task.has_begun()) << task.told();
+  EXPECT_EQ(bench.shell("hysteron online-change run.toml").out, "STAGE: nothing changed; version 1 runs on\n")
+      << "there is no version before";
   bench.write("stage.st", stage(true));
   ASSERT_EQ(bench.shell("hysteron online-change run.toml").code, 0);
   const auto same = bench.shell("hysteron online-change run.toml");
@@ -352,6 +357,25 @@ TEST(OnlineChangeCommand, NobodyElseIsHeard) {
               HasSubstr("The request is not understood"));
   EXPECT_EQ(bench.shell("hysteron online-change run.toml --check").code, 0);
   EXPECT_THAT(task.told(), MatchesRegex("Start: nothing is there yet of kept[^\n]*\n"));  // and of none of these a word
+}
+
+/// Where no more files may be open, the name of the socket is not to blame.
+TEST(OnlineChangeCommand, ASocketForWhichNoFileIsLeftIsAnsweredByThat) {
+  const hysteron::test::ScratchFolder folder;
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  rlimit none = before;
+  none.rlim_cur = 3;
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  std::string mend;
+  try {
+    const tool::ChangeListener listener(folder / "socket", {},
+                                        [](const std::string&, const auto&) { return std::string(); }, {});
+  } catch (const InputError& refused) {
+    mend = refused.diagnostics().all().front().mend;
+  }
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_THAT(mend, StartsWith("let more files be open: "));
 }
 
 std::string given(const std::string& page, const std::string& name) {

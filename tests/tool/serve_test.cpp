@@ -1,4 +1,5 @@
 // hysteron serve, replay and map as a user runs them: the same bits by both engines, and safe outputs at the end.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -123,6 +124,27 @@ TEST(Serve, RunsOnTheVirtualClockAndReplaysToTheBit) {
     EXPECT_EQ(run.code, 0) << run.err;
     EXPECT_EQ(bench.shell("rm -r kept").code, 0);
   }
+}
+
+/// The state of a trace lies in the bytes of the engine that recorded it; nobody has to know which that was.
+TEST(Serve, ATraceIsReplayedByTheEngineThatRecordedIt) {
+  const test::Workbench bench;
+  bench.write("plant.st", served_plant);
+  bench.write("RUN.toml", std::string(run_file) + "[trace]\nfile = \"run.trace\"\n");
+  const std::string replay = "hysteron replay plant.st --trace run.trace";
+  for (const std::string engine : {"interpreter", "compiled"}) {
+    EXPECT_EQ(bench.shell("hysteron serve plant.st --config RUN.toml --virtual --cycles 100 --engine " + engine).code,
+              0);
+    EXPECT_THAT(bench.shell(replay).out, StartsWith("100 steps replayed, 0 with other bits;")) << engine;
+    const bool is_compiled = engine == "compiled";
+    EXPECT_THAT(bench.shell(replay + " --engine " + (is_compiled ? "interpreter" : "compiled")).err,
+                AllOf(HasSubstr(is_compiled ? "the trace was recorded by the compiled engine."
+                                            : "the trace was recorded by the interpreter."),
+                      HasSubstr("mend: leave --engine out.")));
+  }
+  EXPECT_THAT(bench.shell(replay + " --float32").err, HasSubstr("the trace was recorded without --float32."));
+  bench.write("plant.st", bench.read("plant.st") + "(* another *)");
+  EXPECT_EQ(bench.shell(replay).code, 0) << "a comment is no edit";
 }
 
 /// What a parameter file may not say, a client may not commit, and the other way round.

@@ -187,6 +187,12 @@ TEST(RunConfig, WhatIsWrongIsWhatIsNamed) {
             "805@5:8 load must be from 0.001 to 1. | choose a value in that range, or leave the key out.");
   EXPECT_EQ(error_of(y + "[modbus]\nlisten = \"\"\n"),
             "804@4:10 listen must be a text that is not empty. | write it as in listen = \"name\".");
+  EXPECT_EQ(error_of(y + "[inputs.X]\nretain = true\n"),
+            "804@4:10 An input has retain = true, and nothing is retained. | add [retain] with folder = \"retained\", "
+            "or remove the key.");
+  EXPECT_EQ(errors_of("[outputs.Y]\nlow = 1\n"), "806@1:10 ") << "its table, where it has one";
+  EXPECT_EQ(error_of(y + "[modbus]\nallow = [\"127.0.0.1\", \"10.0.0.0/33\"]\n").substr(0, 37),
+            "830@4:23 10.0.0.0/33 is no network. |");
   ProgramShape fast = plant();
   fast.period = 100'000;
   EXPECT_TRUE(error_of(y + "[task]\nperiod = \"1ms\"\n", fast)
@@ -272,7 +278,7 @@ TEST(RunConfig, DevicesAreRefusedAtTheirPlace) {
 
 TEST(RunConfig, ARegisterWrittenTwiceHasItsPage) {
   const auto page = hysteron::test::read_error_page("HY813");
-  EXPECT_EQ(errors_of(page.fails.text, plant_of_two()), "813@8:10 ");
+  EXPECT_EQ(errors_of(page.fails.text, plant_of_two()), "813@9:12 ");
   EXPECT_EQ(errors_of(page.mended.text, plant_of_two()), "");
 }
 

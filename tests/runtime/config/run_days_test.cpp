@@ -67,7 +67,7 @@ TEST(RunDays, RetainIsOfInputsThatClientsWriteAndOfAFolder) {
   const auto config = parse_run_config("RUN.toml", safe_y + retain + "[inputs.Z]\nretain = true\n", plant());
   EXPECT_FALSE(config.task.inputs[0].is_retained);
   EXPECT_TRUE(config.task.inputs[1].is_retained);
-  EXPECT_EQ(errors_of(safe_y + "[inputs.Z]\nretain = true\n"), "804@0:0 ");
+  EXPECT_EQ(errors_of(safe_y + "[inputs.Z]\nretain = true\n"), "804@4:10 ");
   EXPECT_EQ(errors_of(safe_y + retain + "[devices.a]\n[inputs.Z]\nretain = true\ndevice = \"a\"\n"), "804@7:10 ");
 }
 

@@ -182,6 +182,62 @@ TEST_F(Histories, AFileThatIsDeletedIsFollowedByAnother) {
   EXPECT_EQ(test::column_of(file(), 0).size(), 100U);
 }
 
+/// On a virtual clock a run of days may come in one turn, and its rows are as old as they say.
+TEST_F(Histories, AVirtualClockKeepsSizeAndAgeToo) {
+  for (const bool by_age : {false, true}) {
+    HistoryBench bench(folder / (by_age ? "by_age" : "by_size"), 1, by_age ? 100'000'000 : 1'000'000);
+    bench.settings().virtual_time = true;
+    bench.settings().keep = (by_age ? 10 : 86'400) * test::one_second;
+    bench.start(100'000);
+    bench.run(100'000);
+    bench.turn();
+    bench.stop();
+    const auto values = test::column_of(bench.file(), 0);
+    ASSERT_FALSE(values.empty());
+    EXPECT_EQ(values.back(), 100'000.0);
+    if (by_age) {
+      EXPECT_NEAR(values.front(), 90'000.0, 1.0);
+    } else {
+      EXPECT_LE(std::filesystem::file_size(bench.file()), 1'000'000U);
+      EXPECT_LT(values.front(), 95'000.0) << "what has room is kept";
+    }
+  }
+}
+
+/// SQLite closes a file that has another name by now without its log.
+TEST_F(Histories, AFileThatIsMovedTakesItsRowsWithIt) {
+  HistoryBench bench(file());
+  bench.start();
+  bench.second();
+  std::filesystem::rename(file(), folder / "moved.sqlite");
+  bench.second();
+  bench.stop();
+  EXPECT_EQ(test::column_of(folder / "moved.sqlite", 0).size(), 101U);
+  EXPECT_EQ(test::column_of(file(), 0).size(), 100U);
+}
+
+TEST_F(Histories, ALockThatIsDeletedIsTakenAgain) {
+  HistoryBench bench(file());
+  bench.start();
+  bench.second();
+  const std::string lock = file().string() + ".lock";
+  std::filesystem::remove(lock);
+  bench.second();
+  EXPECT_THROW(HistoryLock{file()}, database::DatabaseError) << "no other task comes in by the name that was free";
+  std::filesystem::remove(lock);
+  {
+    const HistoryLock other(file());
+    bench.second();
+    EXPECT_EQ(bench.count().fault, static_cast<std::uint16_t>(HistoryFault::Held));
+    EXPECT_THAT(bench.said(), HasSubstr("history.sqlite: another task writes it"));
+  }
+  bench.pass(2 * test::one_second);
+  bench.second();
+  EXPECT_EQ(bench.count().fault, 0U);
+  bench.stop();
+  EXPECT_EQ(test::column_of(file(), 0).size(), 401U) << "what waited meanwhile is there, too";
+}
+
 TEST_F(Histories, WhatIsDamagedOrOfAnotherVersionIsPutAside) {
   HistoryBench bench(file());
   bench.start();

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -104,7 +105,7 @@ TEST_F(KeptFiles, OfATaskThatRunsAreRefusedAndLeftAlone) {
     RetainFolder held(folder / "kept");
     held.open();
     EXPECT_THAT(host_run(retain()).out,
-                HasSubstr("HY815:5: Another task that runs retains its values in " + (folder / "kept")));
+                HasSubstr("HY815:6: Another task that runs retains its values in " + (folder / "kept")));
   }
   const TraceOutput other(folder / "run.trace");
   const auto names = folder.names();
@@ -136,7 +137,7 @@ TEST_F(KeptFiles, ASlotThatCannotBeReadIsNotTakenForMissing) {
     const auto names = folder.names();
     EXPECT_THAT(
         host_run(retain("mismatch = \"cold\"\n")).out,
-        AllOf(HasSubstr("HY816:5: "), HasSubstr((folder / slot) + ": Is a directory"), HasSubstr("remove what")));
+        AllOf(HasSubstr("HY816:6: "), HasSubstr((folder / slot) + ": Is a directory"), HasSubstr("remove what")));
     EXPECT_EQ(folder.names(), names);
     std::filesystem::remove(folder / slot);
     std::filesystem::rename(elsewhere / "slot", folder / slot);
@@ -144,11 +145,36 @@ TEST_F(KeptFiles, ASlotThatCannotBeReadIsNotTakenForMissing) {
   EXPECT_TRUE(host_run(retain()).well);
 }
 
+/// Each slot, damaged by a byte, leaves the other; both leave nothing to run on.
+TEST_F(KeptFiles, ADamagedSlotIsToldOfAndTwoAreRefusedWithTheirMend) {
+  for (int run = 0; run < 2; ++run) {
+    EXPECT_TRUE(host_run(retain()).well);
+  }
+  const auto damage = [&](const std::string& slot) {
+    std::string bytes = contents_of(folder / ("kept/" + slot));
+    bytes.at(bytes.size() / 2) ^= 1;
+    folder.write("kept/" + slot, bytes);
+  };
+  damage("retain_b");
+  EXPECT_THAT(
+      host_run(retain()).err,
+      HasSubstr((folder / "kept") + ": one slot is damaged: see to the disk. The other was taken, state 1: what "
+                                    "was set after it may be lost."));
+  damage("retain_a");
+  damage("retain_b");
+  EXPECT_THAT(host_run(retain()).out,
+              AllOf(StartsWith("HY811:6: No retain slot is whole."),
+                    HasSubstr("put copies of retain_a and retain_b back into " + (folder / "kept"))));
+  EXPECT_THAT(host_run(retain("mismatch = \"cold\"\n")).err,
+              HasSubstr("Retain: " + (folder / "kept") +
+                        ": No retain slot is whole. The task begins without them, and the files are put aside."));
+}
+
 /// An edit of units alone leaves the layout: 250 V/mm must not become 250 V/um.
 TEST_F(KeptFiles, AParameterOfAnotherUnitIsNotTakenOver) {
   EXPECT_TRUE(host_run(retain(), 250.0, "V/mm").well);
   EXPECT_THAT(host_run(retain("mismatch = \"refuse\"\n"), 0.25, "V/um").out,
-              StartsWith("HY811:5: The retained values are of other units: G.A is in V/mm there, V/um here."));
+              StartsWith("HY811:6: The retained values are of other units: G.A is in V/mm there, V/um here."));
   EXPECT_THAT(host_run(retain("mismatch = \"refuse\"\n"), 2.0, "V/mm").out,
               HasSubstr("with 1 parameter as retained and not as given: G.A"));
   const HostRun carried = host_run(retain(), 0.25, "V/um");
@@ -180,16 +206,16 @@ TEST_F(KeptFiles, AStateThatCannotBeWrittenIsAFaultOfTheRun) {
   EXPECT_THAT(refused.out, HasSubstr("; the last state is not retained: " + cause + "; fault: none\n"));
 }
 
-TEST_F(KeptFiles, ALockFileThatCannotBeOneIsRefusedAtItsTable) {
+TEST_F(KeptFiles, ALockFileThatCannotBeOneIsRefusedAtItsKey) {
   const auto with = [](const std::string& file) {
     return host_run("[modbus]\nport = 0\nlock_file = \"" + file + "\"\n").out;
   };
-  EXPECT_TRUE(with(folder.path().string()).starts_with("HY100:5: ")) << with(folder.path().string());
-  EXPECT_TRUE(with("/dev/null/a.lock").starts_with("HY700:5: ")) << with("/dev/null/a.lock");
+  EXPECT_TRUE(with(folder.path().string()).starts_with("HY100:7: ")) << with(folder.path().string());
+  EXPECT_TRUE(with("/dev/null/a.lock").starts_with("HY700:7: ")) << with("/dev/null/a.lock");
   const std::string loop = folder / "loop";
   std::filesystem::create_symlink(loop, loop);
   for (const std::string& file : {loop, folder / std::string(300, 'a'), loop + "/a.lock"}) {
-    EXPECT_THAT(with(file), AllOf(StartsWith("HY100:5: "), HasSubstr(file))) << file;
+    EXPECT_THAT(with(file), AllOf(StartsWith("HY100:7: "), HasSubstr(file))) << file;
   }
 }
 
@@ -239,6 +265,79 @@ TEST_F(KeptFiles, ALockFileThatHasNoRoomKeepsNoTaskFromStartingAndIsWrittenOnceT
   EXPECT_THAT(testing::internal::GetCapturedStderr(),
               AllOf(HasSubstr("plant.registers cannot be written: File too large. It is tried again every 10 s"),
                     HasSubstr("Modbus: the addresses of the registers are in ")));
+}
+
+/// Whoever cleans up takes no address from a client: the next start would give others after an edit.
+TEST_F(KeptFiles, ALockFileThatIsDeletedIsThereAgain) {
+  test::Accumulator program;
+  const RunConfig config = parse_run_config(
+      "RUN.toml",
+      fmt::format("[outputs.Y]\nsafe = 0.0\n[outputs.TORN]\nsafe = 0.0\n[modbus]\nport = 0\nlock_file = \"{}\"\n",
+                  folder / "disk/plant.registers"),
+      program.shape());
+  Task task(program, config.task);
+  testing::internal::CaptureStderr();
+  ServedMap served(config, "PLANT", task, nullptr);
+  const std::string whole = contents_of(folder / "disk/plant.registers");
+  EXPECT_THAT(whole, HasSubstr(" Y\n"));
+  auto now = std::chrono::steady_clock::now();
+  const auto look = [&] { served.look(now += std::chrono::seconds(11)); };
+  look();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  testing::internal::CaptureStderr();
+  std::filesystem::remove_all(folder / "disk");
+  folder.write("disk", "in its way");
+  for (int i = 0; i < 3; ++i) {
+    look();
+  }
+  std::filesystem::remove(folder / "disk");
+  look();
+  EXPECT_EQ(contents_of(folder / "disk/plant.registers"), whole);
+  std::filesystem::remove(folder / "disk/plant.registers");
+  look();
+  EXPECT_EQ(contents_of(folder / "disk/plant.registers"), whole);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(std::ranges::count(said, '\n'), 3) << said;
+  EXPECT_THAT(said,
+              AllOf(HasSubstr("plant.registers was deleted. The file "),
+                    HasSubstr("Modbus: the addresses of the registers are in "),
+                    HasSubstr("plant.registers was deleted, and is there again: registers keep their addresses.")));
+}
+
+TEST_F(KeptFiles, ALockFileMayBeginWithAByteOrderMark) {
+  const std::string table = fmt::format("[modbus]\nport = 0\nlock_file = \"{}\"\n", folder / "plant.registers");
+  EXPECT_TRUE(host_run(table).well);
+  const std::string whole = contents_of(folder / "plant.registers");
+  folder.write("plant.registers", "\xEF\xBB\xBF" + whole);
+  EXPECT_TRUE(host_run(table).well);
+  folder.write("plant.registers", "\xEF\xBB\xBF");
+  EXPECT_THAT(host_run(table).err, HasSubstr("plant.registers was there and had no address"));
+  EXPECT_EQ(contents_of(folder / "plant.registers"), whole);
+}
+
+TEST_F(KeptFiles, AWrongAddressIsRefusedAtItsKey) {
+  EXPECT_THAT(host_run("[modbus]\nport = 0\n[registers.Y]\ntype = \"int16\"\nat = \"nowhere\"\n").out,
+              StartsWith("HY824:9: nowhere is no address."));
+  EXPECT_THAT(host_run("[modbus]\nport = 0\n[addresses]\nY = \"nowhere\"\n").out,
+              StartsWith("HY824:8: nowhere is no address."));
+}
+
+TEST_F(KeptFiles, WhatWouldBeOverwrittenIsRefusedAtItsKey) {
+  test::Accumulator program;
+  const std::string start = "[outputs.Y]\nsafe = 0.0\n[outputs.TORN]\nsafe = 0.0\n";
+  for (const char* const rest :
+       {"[modbus]\nport = 0\nlock_file = \"IN\"\n", "[history]\nkeep = \"1d\"\nfile = \"IN\"\n",
+        "[trace]\nfiles = 3\nfile = \"IN\"\n", "[online_change]\nload = 0.5\nsocket = \"IN\"\n",
+        "[mqtt]\nbroker = \"127.0.0.1\"\nfile = \"IN\"\n"}) {
+    const RunConfig config = parse_run_config("RUN.toml", start + rest, program.shape());
+    try {
+      refuse_to_overwrite_inputs(config, {{.file = "IN", .named_by = "the command"}});
+      ADD_FAILURE() << rest;
+    } catch (const InputError& refused) {
+      EXPECT_EQ(refused.diagnostics().all().front().number, 709) << rest;
+      EXPECT_EQ(refused.diagnostics().all().front().place.line, 7U) << rest;
+    }
+  }
 }
 
 TEST_F(KeptFiles, ATraceThatIsNoOrdinaryFileIsRefusedAtOnce) {

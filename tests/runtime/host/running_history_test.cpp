@@ -74,7 +74,7 @@ TEST_F(RunningHistories, EachCycleOfAVirtualRunIsThere) {
 
 TEST_F(RunningHistories, WhatIsOfSomethingElseIsRefused) {
   folder.write("history.sqlite", "FUNCTION_BLOCK PRECIOUS");
-  EXPECT_THAT(run(table()).out, StartsWith("HY817:5: " + file().string() + " is there already, and is no history."));
+  EXPECT_THAT(run(table()).out, StartsWith("HY817:6: " + file().string() + " is there already, and is no history."));
   EXPECT_EQ(hysteron::test::contents_of(file()), "FUNCTION_BLOCK PRECIOUS");
   EXPECT_EQ(folder.names(), (std::set<std::string>{"history.sqlite"}));
 }
@@ -92,7 +92,7 @@ TEST_F(RunningHistories, ThePageOfForeignFilesKeepsItsWord) {
 
 TEST_F(RunningHistories, OfATaskThatRunsAreRefused) {
   const HistoryLock held(file());
-  EXPECT_THAT(run(table()).out, StartsWith("HY815:5: Another task that runs writes its history to "));
+  EXPECT_THAT(run(table()).out, StartsWith("HY815:6: Another task that runs writes its history to "));
 }
 
 TEST_F(RunningHistories, ADiskThatIsMissingStopsNoControl) {

@@ -345,10 +345,10 @@ int number_of_refusal(const ServerOptions& options) {
 ServerOptions options_of(const test::FencedBlock& block, std::uint16_t busy) {
   const auto table = toml::parse(block.text);
   ServerOptions options{.port = 0};
-  options.listen = table["server"]["listen"].value_or(options.listen);
-  const auto port = table["server"]["port"].value_or(std::int64_t{0});
+  options.listen = table["modbus"]["listen"].value_or(options.listen);
+  const auto port = table["modbus"]["port"].value_or(std::int64_t{0});
   options.port = port == 502 ? 502 : port == 1502 ? busy : 0;
-  if (const auto* allow = table["server"]["allow"].as_array()) {
+  if (const auto* allow = table["modbus"]["allow"].as_array()) {
     for (const auto& one : *allow) {
       options.allow.push_back(one.value<std::string>().value());
     }

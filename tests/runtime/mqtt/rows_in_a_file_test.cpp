@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -10,6 +11,7 @@
 #include "runtime/mqtt/outbox_file.hpp"
 #include "tests/runtime/mqtt/mqtt_bench.hpp"
 #include "tests/support/file_size_limit.hpp"
+#include "tests/support/own_disk.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::runtime {
@@ -114,6 +116,21 @@ TEST_F(RowsInAFile, AFullDiskAtTheEndLosesWhatIsNotInTheFileAlone) {
   EXPECT_THAT(bench.remarks().problem(), HasSubstr("20 since the start"));
   bench.stop();
   EXPECT_EQ(waiting.rows_in_the_file(), 11U);
+}
+
+/// Nothing there is in the way: the disk itself has to be seen to.
+TEST_F(RowsInAFile, OnAReadOnlyDiskTheMendIsThatOfTheDisk) {
+  const hysteron::test::ScratchFolder disk;
+  hysteron::test::with_own_disk(disk.path().string(), "size=1m", [&] {
+    hysteron::test::change_disk(disk.path().string(), "size=1m", true);
+    try {
+      const OutboxFile file(disk.path() / "rows.sqlite", {"U", "Y"});
+      ADD_FAILURE();
+    } catch (const database::DatabaseError& problem) {
+      EXPECT_EQ(problem.reason(), EROFS) << problem.what();
+      EXPECT_THAT(database::way_out(problem), HasSubstr("See to the disk: "));
+    }
+  });
 }
 
 TEST_F(RowsInAFile, AFileOfAnotherTaskIsLeftAloneAndTheMendIsSaid) {

@@ -82,6 +82,29 @@ TEST(Retain, InputsComeBackAndOlderFilesHaveNone) {
   EXPECT_TRUE(decode_slot(older).values.inputs.empty());
 }
 
+TEST(Retain, AFolderThatIsDeletedIsMadeAgainAndHeldAgain) {
+  const hysteron::test::ScratchFolder scratch;
+  const auto folder = scratch.path() / "kept";
+  RetainFolder files(folder);
+  files.open();
+  const auto bytes = encode_slot(some_values(7));
+  EXPECT_EQ(files.write(0, bytes), "");
+  EXPECT_EQ(files.take_remark(), "");
+  std::filesystem::remove_all(folder);
+  {
+    RetainFolder other(folder);
+    other.open();
+    EXPECT_EQ(files.write(1, bytes), folder.string() + ": another task retains its values there by now");
+    EXPECT_EQ(other.read(1), std::nullopt);
+  }
+  EXPECT_EQ(files.write(1, bytes), "");
+  EXPECT_EQ(files.read(1), bytes);
+  EXPECT_EQ(files.take_remark(), folder.string() + " was deleted or moved. It is there again, with the newest state.");
+  EXPECT_EQ(files.take_remark(), "");
+  RetainFolder other(folder);
+  EXPECT_THROW(other.open(), std::system_error);
+}
+
 TEST(Retain, TheSumIsTheStandardsOwn) {
   // RFC 3720, B.4: 32 bytes of zeros, of ones, and 0 to 31.
   std::vector<std::byte> bytes(32, std::byte{0});

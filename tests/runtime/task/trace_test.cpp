@@ -302,28 +302,31 @@ TEST(Trace, ACutFileIsReadUpToTheCutAndABrokenOneRefused) {
             "a record of an unknown kind or wrong length at byte " + std::to_string(head));
   program.mutable_shape().layout = "other";
   EXPECT_EQ(replay(bytes, program, result),
-            "the trace is of another diagram (ACCUMULATOR), or was made by another way of running it");
+            "the trace is of another diagram, or of this one before an edit (ACCUMULATOR)");
 }
 
 /// Years of cycles take the room that they are given, each file can be replayed by itself, and none lacks a step.
 TEST(Trace, FilesFollowOneAnotherAndTheOldestGo) {
-  const hysteron::test::ScratchFolder scratch;
-  const TraceSettings settings{
-      .file = scratch / "trace", .ring_bytes = 4000, .file_bytes = 30'000, .files = 3, .waits = true};
-  (void)traced_run(settings, 20'000);
-  EXPECT_EQ(scratch.names(), (std::set<std::string>{"trace", "trace.1", "trace.2"}));
-  std::uint64_t next = 20'000;
-  for (std::size_t number = 0; number < 3; ++number) {
-    const auto file = number == 0 ? settings.file : previous_trace(settings.file, number);
-    const auto bytes = hysteron::test::contents_of(file);
-    EXPECT_LT(bytes.size(), 30'000U + 3 * 4000U) << number;
-    std::vector<TraceStep> steps;
-    const auto result = replayed(bytes, &steps);
-    EXPECT_EQ(result.different + result.without_state + result.dropped, 0U) << number;
-    EXPECT_TRUE(result.complete) << number;
-    ASSERT_FALSE(steps.empty());
-    EXPECT_EQ(steps.back().number + 1, next) << number;
-    next = steps.front().number;
+  for (const std::size_t ring_bytes : {std::size_t{4000}, std::size_t{4} << 20}) {  // the writer is far behind
+    const hysteron::test::ScratchFolder scratch;
+    const TraceSettings settings{
+        .file = scratch / "trace", .ring_bytes = ring_bytes, .file_bytes = 30'000, .files = 3, .waits = true};
+    (void)traced_run(settings, 20'000);
+    EXPECT_EQ(scratch.names(), (std::set<std::string>{"trace", "trace.1", "trace.2"}));
+    std::uint64_t next = 20'000;
+    for (std::size_t number = 0; number < 3; ++number) {
+      const auto file = number == 0 ? settings.file : previous_trace(settings.file, number);
+      const auto bytes = hysteron::test::contents_of(file);
+      EXPECT_LE(bytes.size(), 30'000U) << number;
+      std::vector<TraceStep> steps;
+      const auto result = replayed(bytes, &steps);
+      EXPECT_EQ(result.different + result.without_state + result.dropped, 0U) << number;
+      EXPECT_TRUE(result.complete) << number;
+      ASSERT_FALSE(steps.empty());
+      EXPECT_EQ(steps.back().number + 1, next) << number;
+      next = steps.front().number;
+    }
+    EXPECT_LT(next, 19'300U) << "the room is used";
   }
 }
 
@@ -355,6 +358,65 @@ TEST(Trace, AFileThatIsMovedAwayIsFollowedByAnother) {
   ASSERT_FALSE(after.empty());
   EXPECT_EQ(after.back().number, 1999U);
   EXPECT_FALSE(trace.is_cut());
+}
+
+/// As the one before, and the steps of the file that is gone are told of and counted.
+TEST(Trace, AFileThatIsDeletedIsSaidAndFollowedByAnother) {
+  const hysteron::test::ScratchFolder scratch;
+  const TraceSettings settings{.file = scratch / "trace", .waits = true};
+  Accumulator program;
+  Trace trace(settings, program);
+  Task task(program, {.loop = {.cycles = 2000}, .inputs = {{}}, .outputs = {{}, {}}}, {.trace = &trace});
+  program.during_step = [&, step = 0](std::span<double>) mutable {
+    if (++step == 1000) {
+      EXPECT_TRUE(hysteron::test::soon([&] { return std::filesystem::file_size(settings.file) > 1000; }));
+      std::filesystem::remove(settings.file);
+    }
+    if (step == 1500) {
+      EXPECT_TRUE(hysteron::test::soon([&] { return trace.wants_next(); }));
+    }
+  };
+  VirtualClock clock;
+  const std::atomic<bool> stop{false};
+  (void)task.run(clock, stop);
+  trace.finish();
+  std::vector<TraceStep> after;
+  EXPECT_EQ(replayed(hysteron::test::contents_of(settings.file), &after).different, 0U);
+  ASSERT_FALSE(after.empty());
+  EXPECT_EQ(after.back().number, 1999U);
+  EXPECT_EQ(trace.dropped() + after.size(), 2000U);
+  EXPECT_EQ(trace.remarks().lines(),
+            std::vector{fmt::format("{} was deleted, or moved to another disk, and {} steps with it. Another file is "
+                                    "begun.",
+                                    settings.file.string(), trace.dropped())});
+  EXPECT_FALSE(trace.is_cut());
+}
+
+TEST(Trace, AFileThatIsDeletedAtTheEndIsCutShort) {
+  const hysteron::test::ScratchFolder scratch;
+  Accumulator program;
+  Trace trace({.file = scratch / "trace"}, program);
+  const std::vector<double> inputs(1);
+  const std::vector<double> outputs(2);
+  trace.before_step(0, program);
+  trace.step(0, 0, Fault::none, inputs, outputs, outputs);
+  EXPECT_TRUE(hysteron::test::soon([&] { return std::filesystem::file_size(scratch / "trace") > 200; }));
+  std::filesystem::remove(scratch / "trace");
+  trace.finish();
+  EXPECT_TRUE(trace.is_cut());
+  EXPECT_EQ(trace.dropped(), 1U);
+  EXPECT_EQ(trace.problem(), (scratch / "trace") + ": somebody deleted it");
+}
+
+/// No record is written before the trigger fires, and until then nobody else is to have the name.
+TEST(Trace, AFileThatIsDeletedWhileItsTriggerWaitsIsThereAgain) {
+  const hysteron::test::ScratchFolder scratch;
+  Accumulator program;
+  const Trace trace({.file = scratch / "trace", .trigger = TraceTrigger{}}, program);
+  ASSERT_TRUE(std::filesystem::remove(scratch / "trace"));
+  EXPECT_TRUE(hysteron::test::soon([&] { return std::filesystem::exists(scratch / "trace"); }));
+  EXPECT_FALSE(trace.wants_next()) << "a state at each step would fill the memory of steps before";
+  EXPECT_THROW(TraceOutput(scratch / "trace"), std::system_error);
 }
 
 TEST(Trace, AFileThatTakesNoMoreEndsWithAWholeStepAndTheRestIsCounted) {

@@ -29,8 +29,10 @@ void add_record_options(CLI::App& app, RecordOptions& options) {
       ->option_text("point|comma");
   app.add_option("--resample", options.resample,
                  "Brings uneven times, or another rate, to the diagram's sample time: linear for slow analog signals, "
-                 "hold for encoders and commands, average for noisy signals at a higher rate.")
-      ->option_text("linear|hold|average");
+                 "hold for encoders and commands, average for noisy signals at a higher rate. U=hold says it of one "
+                 "signal; may be repeated.")
+      ->option_text("linear|hold|average|U=hold")
+      ->allow_extra_args(false);
 }
 
 std::string record_arguments(const RecordOptions& options) {
@@ -40,6 +42,9 @@ std::string record_arguments(const RecordOptions& options) {
   }
   for (const std::string& column : options.columns) {
     text += " --column " + shell_word(column);
+  }
+  for (const std::string& way : options.resample) {
+    text += " --resample " + shell_word(way);
   }
   return text;
 }

@@ -170,6 +170,11 @@ class Runs(Folder):
         self.assertEqual(caught.exception.code, "HY507")
         self.assertIn("resample", caught.exception.mend)
         self.assertLessEqual(len(plant.run(columns, resample="hold")["t"]), 200)
+        by_name = plant.run(columns, resample={"U": "hold", "*": "linear"})
+        self.assertEqual(bits(by_name["Y"]), bits(plant.run(columns, resample="hold")["Y"]))
+        with self.assertRaises(hysteron.Error) as caught:
+            plant.run(columns, resample={"Q": "hold"})
+        self.assertIn('resample={"', caught.exception.mend)
 
 
 def plant_steps(plant, values):

@@ -54,6 +54,26 @@ TEST_F(CompareCommand, RowsAndColumnsThatOneAloneHasAreDifferences) {
   EXPECT_THAT(compare("a.csv late.csv", 2).err, AllOf(HasSubstr("HY730"), HasSubstr("no time in common")));
 }
 
+/// Records of the same uneven times row by row; of two clocks at the times of the slower one, and of those in A's grid.
+TEST_F(CompareCommand, UnevenTimesAndOtherClocks) {
+  bench.write("a.csv", "t,y\n0,0\n1,10\n2.2,22\n3,30\n4,40\n5,50\n6,60\n");
+  bench.write("b.csv", "t,y\n0,0\n1,10\n2.2,23\n3,30\n4,40\n5,50\n6,60\n");
+  EXPECT_THAT(
+      compare("a.csv b.csv", 1).out,
+      HasSubstr("y: largest difference 1 at t = 2.2 s, RMS 0.378; first different at t = 2.2 s, in 1 of 7 rows"));
+  bench.write("slow.csv", "t,y\n0.5,5\n2.5,25\n4.5,46\n");
+  EXPECT_THAT(compare("a.csv slow.csv", 2).err,
+              AllOf(HasSubstr("no time in common"), HasSubstr("--resample linear, or hold")));
+  for (const std::string files : {"a.csv slow.csv", "slow.csv a.csv"}) {
+    EXPECT_THAT(compare(files + " --resample linear", 1).out,
+                AllOf(HasSubstr("y: largest difference 1 at t = 4.5 s"), HasSubstr("in 1 of 3 rows")))
+        << files;
+  }
+  bench.write("shifted.csv", "t,y\n0,0\n1.5,15\n2.5,25\n4,40\n5.5,55\n6,60\n");
+  EXPECT_THAT(compare("a.csv shifted.csv", 1).out,
+              HasSubstr("; --resample linear compares at the times of the slower"));
+}
+
 TEST_F(CompareCommand, ParametersValueByValue) {
   bench.write("a.toml", "[parameters.A]\nK = 2.0\nN = 3\nOLD = 1.0\n[initial.S]\nX = 0.0\n");
   bench.write("b.toml", "# tuned\n[parameters.A]\nN = 3.0\nK = 2.5\nNEW = true\n[initial.S]\nX = 1.0\n");

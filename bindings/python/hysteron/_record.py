@@ -65,7 +65,8 @@ def read_record(path, *, diagram=None, columns=None, **given):
     """Reads a file as `hysteron record` does, in whatever dress a tool wrote it.
 
     Options are those of the tool, as texts or numbers: time="NAME[ms]", rate="1kHz", columns={"U": "MAIN.u[mV]"},
-    skip=3, range="2s..8s", rows="1..600", decimal="comma", resample="linear". With a diagram, [record] of its parameter
+    skip=3, range="2s..8s", rows="1..600", decimal="comma", resample="linear", or by signal
+    resample={"Q": "hold", "*": "linear"}, where * is all others. With a diagram, [record] of its parameter
     file holds where no option does, and a record is resampled to its sample time.
     """
     pointer, messages = called("record_read", os.fsencode(path), diagram._pointer if diagram else None,

@@ -67,14 +67,15 @@ std::vector<NamedRecord> records_of(const CompareOptions& options, Console& cons
       b = records::parse_record(options.b, bytes_of_b, same);
     }
   }
-  for (const records::Record* const record : {&a, &b}) {
-    for (const std::string& note : record->notes()) {
-      Console::note(record->file(), note);
-    }
-  }
   std::vector<NamedRecord> result;
   result.push_back({.name = options.a, .record = std::move(a)});
   result.push_back({.name = options.b, .record = std::move(b)});
+  bring_to_one_unit(result);
+  for (const NamedRecord& one : result) {
+    for (const std::string& note : one.record.notes()) {
+      Console::note(one.record.file(), note);
+    }
+  }
   return result;
 }
 

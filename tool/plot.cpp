@@ -102,17 +102,19 @@ std::vector<NamedRecord> records_of(const PlotOptions& options, Console& console
     const std::string bytes = read_text_file(options.files[i]);
     console.sources().put(options.files[i], bytes);
     records.push_back({.name = names[i], .record = records::parse_as_recorded(options.files[i], bytes, reading)});
-    const records::Record& record = records.back().record;
-    if (record.columns().empty()) {
+    if (records.back().record.columns().empty()) {
       throw InputError(error::bad_usage, {.file = options.files[i]},
                        fmt::format("{} has no column of numbers.", options.files[i]),
                        fmt::format("`hysteron record {}` says what was understood of it.", options.files[i]));
     }
+  }
+  bring_to_one_unit(records);
+  for (const auto& [name, record] : records) {
     for (const std::string& note : record.notes()) {
-      Console::note(options.files[i], note);
+      Console::note(record.file(), note);
     }
     for (const records::Record::Unreadable& one : record.unreadable()) {
-      Console::note(options.files[i], fmt::format("{} is left out: {}", one.name, one.fault.cause));
+      Console::note(record.file(), fmt::format("{} is left out: {}", one.name, one.fault.cause));
     }
   }
   return records;

@@ -124,6 +124,30 @@ std::vector<double> values_in_unit(const std::string& unit, const records::Colum
   return values;
 }
 
+void bring_to_one_unit(std::span<NamedRecord> records) {
+  for (NamedRecord& later : records) {
+    for (const std::string& name : later.record.names()) {
+      const auto first = std::ranges::find_if(records, [&](const NamedRecord& one) {
+        const records::Column* const column = one.record.find(name);
+        return &one == &later || (column != nullptr && !column->unit.empty());
+      });
+      const records::Column& column = later.record.column(name);
+      if (&*first == &later) {
+        continue;
+      }
+      const std::string unit = first->record.column(name).unit;
+      if (column.unit.empty()) {
+        later.record.note(fmt::format("column {} has no unit, and is taken to be in {}, as in {}", column.name, unit,
+                                      first->record.file()));
+      } else if (const double factor = factor_to(unit, column, later.record); factor != 1.0) {
+        later.record.note(fmt::format("column {} is in {}, and was converted to {}, as in {}: times {}", column.name,
+                                      column.unit, unit, first->record.file(), number_text(factor)));
+        later.record.convert(name, factor, unit);
+      }
+    }
+  }
+}
+
 Figure figure_over_time(std::span<const NamedRecord> records, const std::vector<std::string>& chosen) {
   Figure figure{.title = names_of(records)};
   for (const std::string& name : columns_of(records, chosen)) {

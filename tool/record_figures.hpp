@@ -23,6 +23,10 @@ struct NamedRecord {
 [[nodiscard]] plots::Figure figure_over_time(std::span<const NamedRecord> records,
                                              const std::vector<std::string>& chosen = {});
 
+/// Brings columns of one name to the unit that they have in the first of the records that states one, and notes it.
+/// Throws InputError HY729 where one cannot be brought there.
+void bring_to_one_unit(std::span<NamedRecord> records);
+
 /// The values of a column in a unit, where both are known; as they are where one is not. Throws InputError HY729 where
 /// one cannot be brought to the other.
 [[nodiscard]] std::vector<double> values_in_unit(const std::string& unit, const records::Column& column,

@@ -49,17 +49,18 @@ std::string record_arguments(const RecordOptions& options) {
   return text;
 }
 
-void say_what_was_read(const records::Record& record, const Program& program, bool tell_unused) {
-  for (const std::string& note : what_was_read(record, program, tell_unused)) {
+void say_what_was_read(const records::Record& record, const Program& program, bool tell_unused, std::string_view used) {
+  for (const std::string& note : what_was_read(record, program, tell_unused, used)) {
     Console::note(record.file(), note);
   }
 }
 
 std::vector<records::Record> read_and_told(const std::vector<std::string>& logs, const RecordOptions& options,
-                                           const Program& program, bool tell_unused, Diagnostics& diagnostics) {
+                                           const Program& program, bool tell_unused, Diagnostics& diagnostics,
+                                           std::string_view used) {
   std::vector<records::Record> records = read_measured_records(logs, options, program, diagnostics);
   for (const records::Record& record : records) {
-    say_what_was_read(record, program, tell_unused);
+    say_what_was_read(record, program, tell_unused, used);
   }
   return records;
 }

@@ -245,7 +245,8 @@ records::ReadOptions read_options(const RecordOptions& options, const Program* p
   return result;
 }
 
-std::vector<std::string> what_was_read(const records::Record& record, const Program& program, bool tell_unused) {
+std::vector<std::string> what_was_read(const records::Record& record, const Program& program, bool tell_unused,
+                                       std::string_view used) {
   std::vector<std::string> notes = record.notes();
   const Graph& graph = program.graph;
   for (const Port& input : graph.inputs) {
@@ -257,7 +258,8 @@ std::vector<std::string> what_was_read(const records::Record& record, const Prog
   std::vector<std::string> unused;
   for (const std::string& name : record.names()) {
     const auto same = [&](const Port& port) { return equal_ignoring_case(port.name, name); };
-    if (std::ranges::none_of(graph.inputs, same) && std::ranges::none_of(graph.outputs, same)) {
+    if (std::ranges::none_of(graph.inputs, same) && std::ranges::none_of(graph.outputs, same) &&
+        !equal_ignoring_case(name, used)) {
       unused.push_back(name);
     }
   }

@@ -51,9 +51,10 @@ auto texts_of(Options& options) {
 [[nodiscard]] records::ReadOptions read_options(const RecordOptions& options, const Program* program = nullptr);
 
 /// What was understood of a record, a sentence each without capital and point: notes of the reader, inputs that have no
-/// column and keep their defaults, and, with `tell_unused`, the columns that the diagram has no port for.
+/// column and keep their defaults, and, with `tell_unused`, the columns that the diagram has no port for, but one that
+/// is used all the same.
 [[nodiscard]] std::vector<std::string> what_was_read(const records::Record& record, const Program& program,
-                                                     bool tell_unused);
+                                                     bool tell_unused, std::string_view used = {});
 
 /// Reads measured records for a diagram, in its units. Throws InputError HY730 where two are the same file, under
 /// whatever names: a repeated record would count as a second measurement, and shrink the standard errors of what is

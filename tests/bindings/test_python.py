@@ -131,6 +131,10 @@ class Runs(Folder):
         out = plant.run({"U": 1000.0 * u}, units={"U": "mV"})
         numpy.testing.assert_allclose(out["Y"], plant.run({"U": u})["Y"], rtol=1e-12)
         self.assertTrue(any("mV" in note for note in out.notes), out.notes)
+        fitted = hysteron.compile(PLANT, SETTINGS)
+        u = drive(2000)["U"]
+        tuned = fitted.tune({"U": 1000.0 * u, "Y": plant.run({"U": u})["Y"]}, units={"U": "mV"})
+        self.assertEqual(sum("converted to V" in note for note in tuned.notes), 1, tuned.notes)
         with self.assertRaises(hysteron.Error) as caught:
             plant.run({"U": u}, units={"U": "nm"})
         self.assertEqual(caught.exception.code, "HY729")

@@ -54,6 +54,17 @@ TEST_F(CompareCommand, RowsAndColumnsThatOneAloneHasAreDifferences) {
   EXPECT_THAT(compare("a.csv late.csv", 2).err, AllOf(HasSubstr("HY730"), HasSubstr("no time in common")));
 }
 
+TEST_F(CompareCommand, ConvertedUnitsAreSaid) {
+  bench.write("a.csv", "t,y [um],z\n0,1,5\n1,2,5\n2,3,5\n");
+  bench.write("b.csv", "t,y [nm],z [V]\n0,1000,5\n1,2000,5\n2,3000,5\n");
+  EXPECT_THAT(compare("a.csv b.csv --abs 1e-9", 0).err,
+              HasSubstr("note: b.csv: column y is in nm, and was converted to um, as in a.csv: times 0.001\n"));
+  EXPECT_THAT(compare("b.csv a.csv --abs 1e-9", 0).err,
+              HasSubstr("note: a.csv: column z has no unit, and is taken to be in V, as in b.csv\n"));
+  bench.write("c.csv", "t,y [kg]\n0,1\n1,2\n2,3\n");
+  EXPECT_THAT(compare("a.csv c.csv", 2).err, HasSubstr("HY729"));
+}
+
 /// Records of the same uneven times row by row; of two clocks at the times of the slower one, and of those in A's grid.
 TEST_F(CompareCommand, UnevenTimesAndOtherClocks) {
   bench.write("a.csv", "t,y\n0,0\n1,10\n2.2,22\n3,30\n4,40\n5,50\n6,60\n");

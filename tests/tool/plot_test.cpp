@@ -63,6 +63,13 @@ TEST_F(PlotCommand, TwoRecordsAreDrawnTogetherInOneUnit) {
   EXPECT_FALSE(bench.has("both.svg"));
 }
 
+TEST_F(PlotCommand, ConvertedUnitsAreSaid) {
+  bench.write("a.csv", "t,y [um]\n0,1\n1,2\n2,3\n");
+  bench.write("b.csv", "t,y [nm]\n0,1000\n1,2000\n2,3000\n");
+  EXPECT_THAT(bench.shell("hysteron plot a.csv b.csv --out ab.svg").err,
+              HasSubstr("note: b.csv: column y is in nm, and was converted to um, as in a.csv: times 0.001\n"));
+}
+
 TEST_F(PlotCommand, ParametersAreDrawnOverTheirFiles) {
   bench.write("a.toml", "[parameters.A]\nK = 1.0\nSAME = 4.0\n");
   bench.write("b.toml", "[parameters.A]\nK = 2.0\nSAME = 4.0\n");

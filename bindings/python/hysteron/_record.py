@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy
 
 from ._library import Handle, library
-from ._messages import called, error, options
+from ._messages import called, error, notes_of, options
 
 
 def _read_only(pointer, count, owner):
@@ -28,7 +28,7 @@ class Record(Mapping):
         rows = library.hysteron_record_rows(pointer)
         self.sample_time = library.hysteron_record_sample_time(pointer)
         #: What was understood of the file that it does not say outright.
-        self.notes = [one.message for one in messages if one.severity == "note"]
+        self.notes = notes_of(messages)
         self.units = {}
         self._columns = {"t": _read_only(library.hysteron_record_time(pointer), rows, self._handle)}
         self.units["t"] = "s"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/errors.hpp"
+#include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "support/root_mean_square.hpp"
 #include "support/rounded_text.hpp"
@@ -91,7 +92,10 @@ ColumnDifference difference_of(const std::vector<double>& a, const std::vector<d
 void add_lonely(Comparison& result, const records::Record& a, const records::Record& b, const char* key, char whose) {
   nlohmann::ordered_json names = nlohmann::ordered_json::array();
   for (const records::Column& column : a.columns()) {
-    if (b.find(column.name) == nullptr) {
+    const auto same_name = [&](const records::Record::Unreadable& one) {
+      return equal_ignoring_case(one.name, column.name);
+    };
+    if (readable(b, column.name) == nullptr && std::ranges::none_of(b.unreadable(), same_name)) {
       result.same = false;
       names.push_back(column.name);
       result.text += fmt::format("{}: only in {}\n", column.name, whose);
@@ -130,7 +134,7 @@ Comparison compare_records(const records::Record& a, const records::Record& b, c
   nlohmann::ordered_json columns = nlohmann::ordered_json::array();
   bool all_bits = true;
   for (const records::Column& column : a.columns()) {
-    const records::Column* const other = b.find(column.name);
+    const records::Column* const other = readable(b, column.name);
     if (other == nullptr) {
       continue;
     }

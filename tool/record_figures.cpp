@@ -124,11 +124,17 @@ std::vector<double> values_in_unit(const std::string& unit, const records::Colum
   return values;
 }
 
+const records::Column* readable(const records::Record& record, const std::string& name) {
+  const auto found = std::ranges::find_if(
+      record.columns(), [&](const records::Column& column) { return equal_ignoring_case(column.name, name); });
+  return found == record.columns().end() ? nullptr : &*found;
+}
+
 void bring_to_one_unit(std::span<NamedRecord> records) {
   for (NamedRecord& later : records) {
     for (const std::string& name : later.record.names()) {
       const auto first = std::ranges::find_if(records, [&](const NamedRecord& one) {
-        const records::Column* const column = one.record.find(name);
+        const records::Column* const column = readable(one.record, name);
         return &one == &later || (column != nullptr && !column->unit.empty());
       });
       const records::Column& column = later.record.column(name);
@@ -154,7 +160,8 @@ Figure figure_over_time(std::span<const NamedRecord> records, const std::vector<
     FigurePanel panel{.title = name, .x_label = "t [s]"};
     std::string unit;
     for (std::size_t i = 0; i < records.size(); ++i) {
-      const records::Column* const column = records[i].record.find(name);
+      const records::Column* const column =
+          chosen.empty() ? readable(records[i].record, name) : records[i].record.find(name);
       if (column == nullptr) {
         continue;
       }

@@ -23,6 +23,9 @@ struct NamedRecord {
 [[nodiscard]] plots::Figure figure_over_time(std::span<const NamedRecord> records,
                                              const std::vector<std::string>& chosen = {});
 
+/// Null where the record has no such column, or one that holds something else than numbers.
+[[nodiscard]] const records::Column* readable(const records::Record& record, const std::string& name);
+
 /// Brings columns of one name to the unit that they have in the first of the records that states one, and notes it.
 /// Throws InputError HY729 where one cannot be brought there.
 void bring_to_one_unit(std::span<NamedRecord> records);

@@ -54,6 +54,17 @@ TEST_F(CompareCommand, RowsAndColumnsThatOneAloneHasAreDifferences) {
   EXPECT_THAT(compare("a.csv late.csv", 2).err, AllOf(HasSubstr("HY730"), HasSubstr("no time in common")));
 }
 
+/// A column that is no signal in one of the records is not compared, and keeps no other from it.
+TEST_F(CompareCommand, AColumnWithoutNumbersIsNamed) {
+  bench.write("a.csv", "t,y,z\n0,1,5\n1,2,5\n2,3,5\n3,4,5\n");
+  bench.write("b.csv", "t,y,z\n0,1,5\n1,2,5\n2,nan,5\n3,4,5\n");
+  for (const std::string files : {"a.csv b.csv", "b.csv a.csv"}) {
+    const auto text = compare(files, 1).out;
+    EXPECT_THAT(text, AllOf(HasSubstr("z: equal bits"), HasSubstr("y: not compared; b.csv: "))) << files;
+    EXPECT_THAT(text, testing::Not(HasSubstr("y: only in"))) << files;
+  }
+}
+
 TEST_F(CompareCommand, ConvertedUnitsAreSaid) {
   bench.write("a.csv", "t,y [um],z\n0,1,5\n1,2,5\n2,3,5\n");
   bench.write("b.csv", "t,y [nm],z [V]\n0,1000,5\n1,2000,5\n2,3000,5\n");

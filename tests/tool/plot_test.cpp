@@ -63,6 +63,15 @@ TEST_F(PlotCommand, TwoRecordsAreDrawnTogetherInOneUnit) {
   EXPECT_FALSE(bench.has("both.svg"));
 }
 
+TEST_F(PlotCommand, AColumnWithoutNumbersIsLeftOutAndSaid) {
+  bench.write("a.csv", "t,y,z\n0,1,5\n1,2,5\n2,3,5\n");
+  bench.write("b.csv", "t,y,z\n0,1,5\n1,nan,5\n2,3,5\n");
+  const auto drawn = bench.shell("hysteron plot a.csv b.csv --out ab.svg");
+  EXPECT_EQ(drawn.code, 0) << drawn.err;
+  EXPECT_THAT(drawn.err, HasSubstr("note: b.csv: y is left out: "));
+  refuse("hysteron plot a.csv b.csv --signal y --out y.svg", "HY506");
+}
+
 TEST_F(PlotCommand, ConvertedUnitsAreSaid) {
   bench.write("a.csv", "t,y [um]\n0,1\n1,2\n2,3\n");
   bench.write("b.csv", "t,y [nm]\n0,1000\n1,2000\n2,3000\n");

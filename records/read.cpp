@@ -271,7 +271,8 @@ Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven
   }
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     TableColumn& column = table.columns[i];
-    if (std::ranges::find(times.used, i) != times.used.end() || column.is_part_of_time) {
+    const bool is_empty = !column.is_named && !column.has_values;  // the edge of a table, a separator at each end
+    if (std::ranges::find(times.used, i) != times.used.end() || column.is_part_of_time || is_empty) {
       continue;
     }
     if (even && even->bridges(i)) {

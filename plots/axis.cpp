@@ -48,7 +48,8 @@ std::vector<double> round_numbers(const Reach& reach, int most) {
   for (int k = 0; k <= 2 * most && (first + k) * step <= reach.high + 1e-9 * step; ++k) {
     numbers.push_back((first + k) * step + 0.0);  // no -0
   }
-  return numbers;
+  constexpr int finest = 8;
+  return numbers.size() < 2 && most < finest ? round_numbers(reach, most + 1) : numbers;
 }
 
 std::string tick_text(double value, double step) {

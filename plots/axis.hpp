@@ -20,7 +20,8 @@ struct Reach {
   [[nodiscard]] Reach with_room(double share) const;
 };
 
-/// Round numbers within a reach: multiples of 1, 2 or 5 times a power of ten, at most so many or one more.
+/// Round numbers within a reach: multiples of 1, 2 or 5 times a power of ten, at most so many or one more; but two at
+/// least where finer ones give them, as one alone shows no scale.
 [[nodiscard]] std::vector<double> round_numbers(const Reach& reach, int most);
 
 /// The number of a tick, with as many digits as tell it from its neighbour at that step.

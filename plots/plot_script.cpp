@@ -34,13 +34,15 @@ function named(name, unit) {
   return unit === "" || unit === "1" ? name : name + " [" + unit + "]";
 }
 
-// Numbers at 1, 2 or 5 times a power of ten, about `most` of them, all with the same digits behind the point.
+// Numbers at 1, 2 or 5 times a power of ten, about `most` of them, all with the same digits behind the point. Two at
+// least: one alone shows no scale.
 function ticks(low, high, most) {
   const rough = (high - low) / most;
   const power = Math.pow(10, Math.floor(Math.log10(rough)));
   const step = power * [1, 2, 5, 10].find(digit => digit * power >= 0.999 * rough);
   const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const big = Math.max(Math.abs(low), Math.abs(high));
+  if (most < 8 && Math.floor(high / step + 1e-9) - Math.ceil(low / step - 1e-9) < 1) return ticks(low, high, most + 1);
   const found = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {
     const value = k * step;

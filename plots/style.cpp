@@ -12,6 +12,7 @@ constexpr std::string_view sheet = R"css(
   --mark: #8cc8ee; --warn: #fff4d6; --warn-line: #c98a00; --bad: #fde8e4; --bad-line: #b3261e;
   --c0: #0072b2; --c1: #d55e00; --c2: #009e73; --c3: #cc79a7; --c4: #b07a00; --c5: #2f9bd8; --c6: #8c6d31; --c7: #1b1f24;
   --shade: #eef3f8; --s0: #b9c0c8; --s1: #d9b26a; --s2: #e0923a; --s3: #d0641c; --s4: #a83a16; --s5: #711f10;
+  --under: var(--paper); --edge: #9aa3ae;
 }
 @media (prefers-color-scheme: dark) {
   :root {
@@ -19,7 +20,7 @@ constexpr std::string_view sheet = R"css(
     --nominal: #8f98a3; --before: #ff9a4a; --after: #56b4e9; --measured: #e8eaed; --floor: #4fd1a5;
     --mark: #1f5f8b; --warn: #3a2f10; --warn-line: #e0a52a; --bad: #45201c; --bad-line: #ff8a7a;
     --c0: #56b4e9; --c1: #ff9a4a; --c2: #4fd1a5; --c3: #e9a6cc; --c4: #f0c04a; --c5: #9bd3f5; --c6: #cdb27e; --c7: #e8eaed;
-    --shade: #1c232b; --s0: #59616a; --s1: #6e5a3a; --s2: #a06c2c; --s3: #d08434; --s4: #f2a850; --s5: #ffdf9e;
+    --edge: #6b7480; --shade: #1c232b; --s0: #59616a; --s1: #6e5a3a; --s2: #a06c2c; --s3: #d08434; --s4: #f2a850; --s5: #ffdf9e;
   }
 }
 @media print {
@@ -34,7 +35,7 @@ constexpr std::string_view sheet = R"css(
   body { font-size: 10pt; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   section, article, .map, tr { break-inside: avoid; }
   h2 { break-after: avoid; }
-  .scroll { overflow: visible; }
+  table, article table, .scroll { overflow: visible; background-image: none; }
   .hint, button.whole { display: none; }
 }
 * { box-sizing: border-box; }
@@ -56,7 +57,20 @@ footer { color: var(--soft); font-size: .87rem; border-top: 1px solid var(--line
 table { border-collapse: collapse; margin: .4rem 0; font-variant-numeric: tabular-nums; }
 article table { width: 100%; }
 article th, article td { padding-right: .5rem; }
-@media (max-width: 700px) { table, article table { display: block; overflow-x: auto; } }
+article { --under: var(--card); }
+@media (max-width: 700px) {
+  td.number, th.number { white-space: normal; }
+  /* What is wider than the page scrolls; where more lies beyond an edge, that edge has a shade. */
+  table, article table, .scroll {
+    display: block; overflow-x: auto; background-repeat: no-repeat;
+    background-image: linear-gradient(to right, var(--under) 40%, transparent),
+      linear-gradient(to left, var(--under) 40%, transparent), linear-gradient(to right, var(--edge), transparent),
+      linear-gradient(to left, var(--edge), transparent);
+    background-position: 0 0, 100% 0, 0 0, 100% 0; background-size: 2.6rem 100%, 2.6rem 100%, .9rem 100%, .9rem 100%;
+    background-attachment: local, local, scroll, scroll;
+  }
+}
+pre.command span { display: inline-block; max-width: 100%; }
 @media (max-width: 700px), print { pre { white-space: pre-wrap; overflow-wrap: anywhere; } }
 th, td { padding: .22rem .9rem .22rem 0; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { font-weight: 500; font-size: .87rem; color: var(--soft); }

@@ -46,6 +46,7 @@ function stepPath(times, values, first, last, x, y) {
   let path = "", penDown = false, held = NaN;
   for (let k = first; k < Math.min(last, values.length); ++k) {
     if (!Number.isFinite(values[k])) {
+      if (penDown) path += `H${x(times[k - 1]).toFixed(1)}`;  // it held until there
       penDown = false;
     } else if (!penDown) {
       path += `M${x(times[k]).toFixed(1)} ${y(values[k]).toFixed(1)}`;

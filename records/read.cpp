@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "records/formats.hpp"
-#include "records/resample.hpp"
+#include "records/resampled_columns.hpp"
 #include "records/scaled_unit.hpp"
 #include "records/statistics.hpp"
 #include "records/table.hpp"
@@ -124,6 +124,22 @@ void refuse_coarse_clock(const Table& table, const Times& times, const Place& pl
                         "more digits."));
 }
 
+/// A signal beside others that goes from whole number to whole number, as an encoder does; nothing where there is none.
+std::string stepping_signal(const Table& table, const Times& times) {
+  std::string stepping;
+  bool has_others = false;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const TableColumn& column = table.columns[i];
+    if (std::ranges::find(times.used, i) != times.used.end() || column.kind != CellKind::Number) {
+      continue;
+    }
+    const bool steps = std::ranges::all_of(column.values, [](double value) { return value == std::round(value); });
+    has_others = has_others || !steps;
+    stepping = steps ? column.name : stepping;
+  }
+  return has_others ? stepping : std::string();
+}
+
 [[noreturn]] void refuse_time(const Table& table, const Times& times, std::size_t rows_before) {
   const TimeFault& fault = *times.grid.fault;
   constexpr int digits = 6;
@@ -153,13 +169,15 @@ void refuse_coarse_clock(const Table& table, const Times& times, const Place& pl
         before);
     throw InputError(list);
   }
+  const std::string signal = stepping_signal(table, times);
   const bool missing = rows_missing_before(times.seconds, fault.row, fault.usual) > 0;
   std::string mend = fmt::format(
       "{}read it with --resample linear, where signals are analog and slow, or --resample hold, for encoders and "
-      "commands, which step.",
+      "commands, which step{}.",
       missing ? fmt::format("rows are missing: read one part alone, --rows 1..{}, or bridge the gap: ",
                             rows_before + fault.row)
-              : std::string());
+              : std::string(),
+      signal.empty() ? std::string() : "; of one signal alone, --resample " + option_value(signal + "=hold"));
   if (fault.coarse) {
     mend += " The times are printed coarsely: more digits may mend it.";
   }
@@ -209,58 +227,6 @@ std::string said_of_mark(const std::string& column, const MarkOfMissing& mark, s
       row > 2 ? fmt::format("1..{}", row - 1) : fmt::format("{}..", row + 1));
 }
 
-struct Grid {
-  std::vector<double> seconds{};
-  double sample_time = 0.0;
-};
-
-/// Where a record is resampled to.
-Grid grid_of(const Times& times, const ReadOptions& options) {
-  double first = times.seconds.front();
-  double last = times.seconds.back();
-  for (const Times::Own& own : times.own) {
-    first = std::max(first, own.seconds.front());
-    last = std::min(last, own.seconds.back());
-  }
-  const double sample_time = options.sample_time.value_or(times.grid.sample_time > 0.0 ? times.grid.sample_time
-                                                          : times.grid.fault           ? times.grid.fault->usual
-                                                                                       : 0.0);
-  return {.seconds = even_times(first, last, sample_time), .sample_time = sample_time};
-}
-
-/// Rows that are further apart than ten of the new ones would be nine tenths invention; most often the unit of the time
-/// is another.
-void refuse_inventing(const Table& table, const Times& times, double sample_time) {
-  const double usual = median_step(times.seconds);
-  constexpr double most = 10.0;
-  if (usual <= most * sample_time) {
-    return;
-  }
-  const std::optional<MistakenUnit> mistaken = mistaken_unit(usual / sample_time);
-  throw InputError(
-      error::two_readings, table.place,
-      fmt::format("The record has a row every {} s: brought to {} s, most rows would be made up.", rounded_text(usual),
-                  rounded_text(sample_time)),
-      !mistaken ? fmt::format("let the diagram run at the rate of the record, or state its time, as --rate {}Hz.",
-                              rounded_text(1.0 / sample_time))
-                : fmt::format("if its times are in {}, say so: --time {}.", mistaken->unit,
-                              option_value(fmt::format("{}[{}]", times.column, mistaken->unit))));
-}
-
-/// What stands in these rows, which rise, is taken away.
-void leave_out(const std::vector<std::size_t>& rows, std::vector<double>& values) {
-  std::size_t kept = 0;
-  auto next = rows.begin();
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (next != rows.end() && *next == k) {
-      ++next;
-    } else {
-      values[kept++] = values[k];
-    }
-  }
-  values.resize(kept);
-}
-
 struct OrderedTimes {
   Times times{};
   bool settled = false;  ///< rows were moved or left out
@@ -290,7 +256,7 @@ Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven
     table.source->names = names_of(table);
   }
   Times times = times_in_order(table, options).times;
-  const bool resample = options.resampling != Resampling::None;
+  const bool resample = options.resamples();
   const bool is_faulty = times.grid.fault && (!resample || times.grid.fault->reversed);
   if (is_faulty && uneven == Uneven::Taken) {
     times.grid.sample_time = std::max(median_step(times.seconds), 0.0);
@@ -299,22 +265,17 @@ Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven
   }
   std::vector<Column> columns;
   std::vector<Record::Unreadable> unreadable;
-  ResamplingCost cost;
-  const Grid grid = resample ? grid_of(times, options) : Grid{};
+  std::optional<ResampledColumns> even;
   if (resample) {
-    refuse_inventing(table, times, grid.sample_time);
-  }
-  if (resample && grid.seconds.size() < 2) {
-    throw InputError(error::record_too_short, table.place, "Resampled, the record has less than two rows.",
-                     "resample to a shorter sample time.");
+    even.emplace(table, times, options);
   }
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     TableColumn& column = table.columns[i];
-    if (std::ranges::find(times.used, i) != times.used.end() || column.is_part_of_time) {
+    const bool is_empty = !column.is_named && !column.has_values;  // the edge of a table, a separator at each end
+    if (std::ranges::find(times.used, i) != times.used.end() || column.is_part_of_time || is_empty) {
       continue;
     }
-    const bool bridged = resample && column.is_gappy && column.missing.size() + 1 < table.rows;
-    if (bridged) {
+    if (even && even->bridges(i)) {
       column.fault.reset();
     }
     if (auto fault = fault_of(table, i)) {
@@ -329,30 +290,19 @@ Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven
     if (equal_ignoring_case(column.name, "t")) {
       column.name += fmt::format(" ({})", i + 1);  // t is the time; this is a temperature or a torque
     }
-    std::vector<double> values = std::move(column.values);
-    if (const auto mark = mark_of_missing(values)) {
+    if (const auto mark = mark_of_missing(column.values)) {
       table.notes.push_back(said_of_mark(column.name, *mark, options.first_row));
     }
-    double step = 0.0;
-    if (resample) {
-      const auto own = std::ranges::find(times.own, i, &Times::Own::column);
-      std::vector<double> at = own != times.own.end() ? own->seconds : times.seconds;
-      values.resize(at.size());  // a signal at a rate of its own has fewer rows
-      if (bridged) {
-        leave_out(column.missing, at);
-        leave_out(column.missing, values);
-      }
-      // A switch is on or off: nothing lies between.
-      const Resampling way = column.kind == CellKind::Truth ? Resampling::Hold : options.resampling;
-      // A line between two values is no finer than they are; a mean of many may be.
-      step = way == Resampling::Average ? 0.0 : statistics_of(values).resolution;
-      values = resampled(at, values, grid.seconds, way, cost);
+    ResampledColumns::Brought brought = even ? even->bring(i) : ResampledColumns::Brought{std::move(column.values)};
+    if (brought.fault) {
+      unreadable.push_back({.name = column.name, .fault = std::move(*brought.fault)});
+      continue;
     }
     columns.push_back({.name = column.name,
                        .unit = column.unit,
-                       .values = std::move(values),
+                       .values = std::move(brought.values),
                        .in_file = column.in_file,
-                       .step = step});
+                       .step = brought.step});
   }
   if (table.source != nullptr) {
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -363,9 +313,8 @@ Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven
     }
   }
   // Of a record that was resampled no row stands in the file.
-  Record record(resample ? grid.seconds : std::move(times.seconds),
-                resample ? grid.sample_time : times.grid.sample_time, std::move(columns), table.place,
-                resample ? nullptr : table.source);
+  Record record(even ? even->seconds() : std::move(times.seconds), even ? even->sample_time() : times.grid.sample_time,
+                std::move(columns), table.place, even ? nullptr : table.source);
   record.set_time_name(times.column);
   for (Record::Unreadable& one : unreadable) {
     record.add_unreadable(std::move(one.name), std::move(one.fault));
@@ -375,11 +324,8 @@ Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven
       record.note(note);
     }
   }
-  if (resample) {
-    record.note(fmt::format(
-        "resampled ({}) to {} s: {} rows, {} of them in gaps; a row lies up to {:.3g} s from its sample{}",
-        name_of(options.resampling), rounded_text(grid.sample_time), cost.rows, cost.made_up, cost.farthest,
-        cost.delay > 0.0 ? fmt::format(", and signals are late by {:.3g} s in the mean", cost.delay) : std::string()));
+  for (const std::string& note : even ? even->said() : std::vector<std::string>()) {
+    record.note(note);
   }
   return record;
 }
@@ -450,7 +396,31 @@ Record parse_uneven_record(const std::string& file, std::string bytes, const Rea
   whole.begin.reset();
   whole.end.reset();
   whole.resampling = Resampling::None;
+  whole.ways.clear();
   return record_of(format.read(file, std::move(bytes), whole), whole, Uneven::Taken);
+}
+
+Record parse_as_recorded(const std::string& file, const std::string& bytes, const ReadOptions& options) {
+  try {
+    return parse_record(file, bytes, options);
+  } catch (const InputError& refused) {
+    const auto is_uneven = [](const Diagnostic& one) { return one.number == error::uneven_time; };
+    if (!std::ranges::all_of(refused.diagnostics().all(), is_uneven)) {
+      throw;
+    }
+  }
+  Record record = parse_uneven_record(file, bytes, options);
+  if (options.begin || options.end) {
+    const RowRange rows = record.rows_between(options.begin.value_or(record.time().front()),
+                                              options.end.value_or(std::numeric_limits<double>::infinity()));
+    refuse_short_range(file, rows.size(), record.time());
+    record = record.slice(rows);
+  }
+  const TimeSurvey found = survey_of(record.time());
+  record.note(fmt::format(
+      "its times are uneven, and are kept: most rows are {} s apart, with a jitter of {:.2g} s RMS{}",
+      rounded_text(found.usual), found.jitter, found.gaps > 0 ? " and " + counted(found.gaps, "gap") : std::string()));
+  return record;
 }
 
 std::size_t rows_missing_before(std::span<const double> time, std::size_t row, double usual) {

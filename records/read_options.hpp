@@ -27,6 +27,13 @@ struct ColumnName {
   bool is_general = false;
 };
 
+/// How one column becomes even: by its name in the diagram or in the file; of a vector, all its elements.
+struct ColumnWay {
+  std::string name{};
+  Resampling way = Resampling::None;
+  bool is_general = false;  ///< said for many records, in a parameter file: a record without the column is read
+};
+
 struct ReadOptions {
   std::string time{};            ///< the column of the time; found where it is empty
   std::string time_unit{};       ///< its unit; what the file says where it is empty
@@ -38,8 +45,13 @@ struct ReadOptions {
   std::optional<double> end{};    ///< s: rows from it on are left out
   std::size_t first_row = 1;      ///< rows of numbers before it are left out
   std::optional<std::size_t> last_row{};
-  Resampling resampling = Resampling::None;
+  Resampling resampling = Resampling::None;  ///< of all columns that `ways` does not name
+  std::vector<ColumnWay> ways{};
+  std::vector<std::string> stepping{};  ///< columns that are held, however others are resampled: BOOL, DINT, WORD
   std::optional<double> sample_time{};  ///< s: what a record is resampled to; its own median step where none is given
+  std::optional<double> origin{};  ///< s: a time of the grid that it is resampled to; its first where none is given
+
+  [[nodiscard]] bool resamples() const { return resampling != Resampling::None || !ways.empty(); }
 };
 
 }  // namespace hysteron::records

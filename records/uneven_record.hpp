@@ -1,4 +1,4 @@
-// A record whose times are not even, to be shown before it is refused.
+// A record whose times are not even: to be shown, drawn, or compared row by row.
 #pragma once
 
 #include <cstddef>
@@ -13,6 +13,9 @@ namespace hysteron::records {
 /// As parse_record, but uneven times are no error: they are as in the file, and the sample time is their median step,
 /// which may be 0. For showing alone: what runs over a record steps evenly.
 [[nodiscard]] Record parse_uneven_record(const std::string& file, std::string bytes, const ReadOptions& options);
+
+/// As parse_record, but times that rise unevenly are kept, and a note says so. For what takes a record row by row.
+[[nodiscard]] Record parse_as_recorded(const std::string& file, const std::string& bytes, const ReadOptions& options);
 
 /// What is uneven in times.
 struct TimeSurvey {

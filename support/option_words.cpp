@@ -21,7 +21,7 @@ constexpr std::array options{
     LibraryOption{"range", "range"},
     LibraryOption{"rows", "rows"},
     LibraryOption{"decimal", "decimal"},
-    LibraryOption{"resample", "resample"},
+    LibraryOption{"resample", "resample", OptionForm::TextOrPair},
     LibraryOption{"top", "top", OptionForm::Text, true},
     LibraryOption{"any-order", "any_order", OptionForm::Flag},
     LibraryOption{"float32", "float32", OptionForm::Flag},
@@ -128,6 +128,11 @@ std::string value_text(const LibraryOption& option, const std::string& value, Ca
   switch (option.form) {
     case OptionForm::Flag:
       return caller == Caller::Python ? "True" : "true";
+    case OptionForm::TextOrPair:
+      if (value.find('=') == std::string::npos) {
+        return literal(value, OptionForm::Text);
+      }
+      [[fallthrough]];
     case OptionForm::Pair: {
       const auto equals = value.find('=');
       return fmt::format("{{{}: {}}}", literal(value.substr(0, equals), OptionForm::Text),

@@ -3,9 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "records/read.hpp"
+#include "records/uneven_record.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/text_file.hpp"
@@ -25,7 +27,8 @@ constexpr std::string_view compare_examples = R"(Examples:
   hysteron compare plant.st improved.st
   hysteron compare before/verdict.json after/verdict.json --json
 
-Two records are compared column by column at the times that both have; parameter files value by value; diagrams by
+Two records are compared column by column at the times that both have, even or not; with --resample, at those of the
+slower one. Parameter files are compared value by value; diagrams by
 their blocks and wires, so that layout and comments are no difference; verdicts by what they say. What the files are is
 found from them. Numbers a and b are the same where |b - a| <= abs + rel*|a|; without --abs and --rel, where they are
 equal.
@@ -43,14 +46,37 @@ struct CompareOptions {
   bool json = false;
 };
 
-records::Record record_of(const std::string& file, const records::ReadOptions& reading, Console& console) {
-  const std::string bytes = read_text_file(file);
-  console.sources().put(file, bytes);
-  records::Record record = records::parse_record(file, bytes, reading);
-  for (const std::string& note : record.notes()) {
-    Console::note(file, note);
+/// Two records at the times that they have; resampled, at those of the slower one, so that no row is made up.
+std::vector<NamedRecord> records_of(const CompareOptions& options, Console& console) {
+  const records::ReadOptions reading = read_options(with_settings_of(options.parameters, options.record));
+  const std::string bytes_of_a = read_text_file(options.a);
+  const std::string bytes_of_b = read_text_file(options.b);
+  console.sources().put(options.a, bytes_of_a);
+  console.sources().put(options.b, bytes_of_b);
+  records::Record a = records::parse_as_recorded(options.a, bytes_of_a, reading);
+  records::Record b = records::parse_as_recorded(options.b, bytes_of_b, reading);
+  if (reading.resamples()) {
+    const bool b_is_slower = b.sample_time() > a.sample_time();
+    const records::Record& slower = b_is_slower ? b : a;
+    records::ReadOptions same = reading;
+    same.sample_time = slower.sample_time();
+    same.origin = slower.time().front();
+    if (b_is_slower) {
+      a = records::parse_record(options.a, bytes_of_a, same);
+    } else {
+      b = records::parse_record(options.b, bytes_of_b, same);
+    }
   }
-  return record;
+  std::vector<NamedRecord> result;
+  result.push_back({.name = options.a, .record = std::move(a)});
+  result.push_back({.name = options.b, .record = std::move(b)});
+  bring_to_one_unit(result);
+  for (const NamedRecord& one : result) {
+    for (const std::string& note : one.record.notes()) {
+      Console::note(one.record.file(), note);
+    }
+  }
+  return result;
 }
 
 Program program_of(const std::string& file, const CompareOptions& options) {
@@ -71,9 +97,7 @@ Comparison compared(FileKind kind, const CompareOptions& options, std::vector<pl
                     Console& console) {
   switch (kind) {
     case FileKind::Record: {
-      const records::ReadOptions reading = read_options(with_settings_of(options.parameters, options.record));
-      std::vector<NamedRecord> records{{.name = options.a, .record = record_of(options.a, reading, console)},
-                                       {.name = options.b, .record = record_of(options.b, reading, console)}};
+      const std::vector<NamedRecord> records = records_of(options, console);
       Comparison result = compare_records(records[0].record, records[1].record, options.tolerance);
       figures.push_back(figure_over_time(records));
       return result;

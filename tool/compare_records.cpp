@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "support/errors.hpp"
+#include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "support/root_mean_square.hpp"
+#include "support/rounded_text.hpp"
 #include "tool/comparison.hpp"
 #include "tool/record_figures.hpp"
 
@@ -35,6 +37,18 @@ std::vector<RowPair> common_rows(const records::Record& a, const records::Record
     }
   }
   return rows;
+}
+
+bool overlap(const records::Record& a, const records::Record& b) {
+  return a.time().front() <= b.time().back() && b.time().front() <= a.time().back();
+}
+
+/// Whether rows of other times lie between those that are common: not a part of the other record, but another clock.
+bool are_mixed(const records::Record& a, const records::Record& b, const std::vector<RowPair>& rows) {
+  const RowPair& first = rows.front();
+  const RowPair& last = rows.back();
+  return last.a - first.a + 1 > rows.size() || last.b - first.b + 1 > rows.size() || (first.a > 0 && first.b > 0) ||
+         (last.a + 1 < a.size() && last.b + 1 < b.size());
 }
 
 bool have_same_bits(double a, double b) {
@@ -78,7 +92,10 @@ ColumnDifference difference_of(const std::vector<double>& a, const std::vector<d
 void add_lonely(Comparison& result, const records::Record& a, const records::Record& b, const char* key, char whose) {
   nlohmann::ordered_json names = nlohmann::ordered_json::array();
   for (const records::Column& column : a.columns()) {
-    if (b.find(column.name) == nullptr) {
+    const auto same_name = [&](const records::Record::Unreadable& one) {
+      return equal_ignoring_case(one.name, column.name);
+    };
+    if (readable(b, column.name) == nullptr && std::ranges::none_of(b.unreadable(), same_name)) {
       result.same = false;
       names.push_back(column.name);
       result.text += fmt::format("{}: only in {}\n", column.name, whose);
@@ -100,7 +117,8 @@ Comparison compare_records(const records::Record& a, const records::Record& b, c
         error::bad_usage, {.file = b.file()},
         fmt::format("The records have no time in common: {} to {} s, and {} to {} s.", number_text(a.time().front()),
                     number_text(a.time().back()), number_text(b.time().front()), number_text(b.time().back())),
-        "cut or resample one of them: --range, --resample.");
+        overlap(a, b) ? "compare them at the times of the slower one: --resample linear, or hold where signals step."
+                      : "give records of the same time: those of another begin have to be cut and shifted.");
   }
   Comparison result;
   result.json["rows"] = rows.size();
@@ -108,13 +126,15 @@ Comparison compare_records(const records::Record& a, const records::Record& b, c
   result.json["rows_only_in_b"] = b.size() - rows.size();
   if (a.size() != rows.size() || b.size() != rows.size()) {
     result.same = false;
-    result.text += fmt::format("{} rows have the same time; {} are only in A, {} only in B\n", rows.size(),
-                               a.size() - rows.size(), b.size() - rows.size());
+    result.text +=
+        fmt::format("{} rows have the same time; {} are only in A, {} only in B{}\n", rows.size(),
+                    a.size() - rows.size(), b.size() - rows.size(),
+                    are_mixed(a, b, rows) ? "; --resample linear compares at the times of the slower one" : "");
   }
   nlohmann::ordered_json columns = nlohmann::ordered_json::array();
   bool all_bits = true;
   for (const records::Column& column : a.columns()) {
-    const records::Column* const other = b.find(column.name);
+    const records::Column* const other = readable(b, column.name);
     if (other == nullptr) {
       continue;
     }
@@ -136,10 +156,10 @@ Comparison compare_records(const records::Record& a, const records::Record& b, c
       result.text += fmt::format("{}: equal bits\n", column.name);
     } else {
       result.text += fmt::format("{}: largest difference {:.4g}{} at t = {} s, RMS {:.4g}{}", column.name,
-                                 found.largest, unit, number_text(time(found.largest_at)), found.rms, unit);
+                                 found.largest, unit, rounded_text(time(found.largest_at)), found.rms, unit);
       result.text += found.beyond == 0 ? std::string("; within the tolerance\n")
                                        : fmt::format("; first different at t = {} s, in {} of {} rows\n",
-                                                     number_text(time(found.first)), found.beyond, rows.size());
+                                                     rounded_text(time(found.first)), found.beyond, rows.size());
     }
   }
   // A column with something that is no finite number is not compared, and so is not the same.

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <string_view>
 #include <system_error>
 
 #include "diagnosis/effects/set_words.hpp"
 #include "diagnosis/evidence/gap_kinds.hpp"
 #include "diagnosis/report/diagnosis_files.hpp"
+#include "diagnosis/report/html.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::tool {
@@ -25,16 +27,16 @@ std::string with_unit(double value, const std::string& unit, int digits = 4) {
 }
 
 /// A share of the gap; the interval of one may end above 1, where it reads as a slip.
-double closed_percent(double share) {
-  return 100.0 * std::min(share, 1.0);
+std::string closed_percent(double share) {
+  return diagnosis::report::percent(std::min(share, 1.0));
 }
 
 std::string line_of(const ParameterFinding& one) {
   if (!std::isfinite(one.low) && !std::isfinite(one.high)) {
     return fmt::format("    {:<24} not determined: without influence in these records\n", one.name);
   }
-  return fmt::format("    {:<24} {}   ({:.4g} to {:.4g})\n", one.name, with_unit(one.value, one.unit), one.low,
-                     one.high);
+  const auto [low, high] = diagnosis::report::interval_ends(one.low, one.high);
+  return fmt::format("    {:<24} {}   ({} to {})\n", one.name, with_unit(one.value, one.unit), low, high);
 }
 
 std::string controller_text(const diagnosis::ControllerFinding& controller) {
@@ -59,29 +61,44 @@ std::string controller_text(const diagnosis::ControllerFinding& controller) {
   return text;
 }
 
-/// The gap by kinds, the larger parts of it.
+/// The gap by kinds, the larger parts of it by name.
 std::string budget_text(const diagnosis::GapBudget& budget) {
   constexpr double least_told = 0.05;
-  std::string parts;
+  std::vector<std::string_view> names;
+  std::vector<double> shares;
+  double others = 0.0;
   for (const diagnosis::KindFinding& one : budget.kinds) {
     if (one.share >= least_told) {
-      const auto* const text = std::ranges::find(diagnosis::gap_kinds, one.kind, &diagnosis::GapKindText::name);
-      parts += fmt::format("{}{} {:.0f} %", parts.empty() ? "" : ", ", text->words, 100.0 * one.share);
+      names.push_back(std::ranges::find(diagnosis::gap_kinds, one.kind, &diagnosis::GapKindText::name)->words);
+      shares.push_back(one.share);
+    } else {
+      others += one.share;
     }
   }
-  return fmt::format("  by kind, at {}: {}{:.0f} % of no kind\n", budget.at, parts.empty() ? "" : parts + "; ",
-                     100.0 * (1.0 - budget.closed));
+  if (others > 0.0) {
+    names.emplace_back("other kinds");
+    shares.push_back(others);
+  }
+  names.emplace_back("no kind");
+  shares.push_back(1.0 - budget.closed);
+  const std::vector<std::string> percents = diagnosis::report::percents_of_whole(shares);
+  std::string parts;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    parts += fmt::format("{}{} {}", parts.empty() ? "" : ", ", names[i], percents[i]);
+  }
+  return fmt::format("  gap by kind, at {}: {}\n", budget.at, parts);
 }
 
-/// How well the feedforward is predicted to do, or why there is none; what it leaves as it is.
+/// What the feedforward does to the improved diagram, or why there is none; what it leaves as it is.
 std::string feedforward_text(const Diagnosis& found) {
   std::string text;
   if (found.tracking_improved > 0.0) {
     const auto rms = [&](double value) { return with_unit(value, found.gap.unit, 3); };
     text += fmt::format(
-        "  feedforward: predicted tracking error {} with the model as it was, {} improved (RMS){}\n",
-        rms(found.tracking_nominal), rms(found.tracking_improved),
-        found.tracking_improved > found.tracking_nominal ? ": the improved one is worse, keep the other" : "");
+        "  feedforward, run through the improved diagram: tracking error {} RMS with the model as it was, {} improved; "
+        "the machine adds what this diagram leaves, {} RMS{}\n",
+        rms(found.tracking_nominal), rms(found.tracking_improved), rms(found.gap.improved),
+        found.tracking_improved > found.tracking_nominal ? ". The improved one is worse: keep the other" : "");
   }
   for (const std::string& note : found.feedforward_notes) {
     text += fmt::format("  {}: {}\n", found.feedforward_text.empty() ? "no feedforward.st" : "feedforward", note);
@@ -106,8 +123,8 @@ std::string diagnosis_text(const Diagnosis& found) {
     text += fmt::format("  {:<10} nominal {}  calibrated {}  improved {}  floor {} ({})\n", gap.signal,
                         with_unit(gap.nominal, gap.unit), with_unit(gap.calibrated, gap.unit),
                         with_unit(gap.improved, gap.unit), with_unit(gap.floor.value, gap.unit), gap.floor.evidence);
-    text += fmt::format("  {:<10} closed {:.1f} % ({:.1f} to {:.1f}) on blocks held out\n", "",
-                        closed_percent(gap.closed), closed_percent(gap.closed_low), closed_percent(gap.closed_high));
+    text += fmt::format("  {:<10} closed {} ({} to {}) on blocks held out\n", "", closed_percent(gap.closed),
+                        closed_percent(gap.closed_low), closed_percent(gap.closed_high));
   }
   if (found.budget) {
     text += budget_text(*found.budget);
@@ -116,7 +133,8 @@ std::string diagnosis_text(const Diagnosis& found) {
     text += fmt::format("  {} at {}{}{}: {:.0f} % of the gap{}\n", effect.id, effect.edge,
                         effect.same_edges.empty() ? "" : fmt::format(" (or {})", fmt::join(effect.same_edges, ", ")),
                         effect.drivers.empty() ? "" : fmt::format(", driven by {}", fmt::join(effect.drivers, ", ")),
-                        100.0 * effect.share, effect.around_plant ? " at the outputs, around the plant" : "");
+                        100.0 * effect.share,
+                        effect.around_plant ? " at the outputs, around the plant, beside the 100 % of the others" : "");
     for (const ParameterFinding& one : effect.parameters) {
       text += line_of(one);
     }
@@ -125,8 +143,10 @@ std::string diagnosis_text(const Diagnosis& found) {
     }
   }
   if (!found.effects.empty()) {
-    text += fmt::format("  of the gap: inputs and outputs {:.0f} %, plant {:.0f} %, open {:.0f} %\n",
-                        100.0 * found.split.input_output, 100.0 * found.split.plant, 100.0 * found.split.open);
+    const auto percents =
+        diagnosis::report::percents_of_whole({found.split.input_output, found.split.plant, found.split.open});
+    text +=
+        fmt::format("  of the gap: inputs and outputs {}, plant {}, open {}\n", percents[0], percents[1], percents[2]);
   }
   if (found.controller) {
     text += controller_text(*found.controller);
@@ -136,13 +156,13 @@ std::string diagnosis_text(const Diagnosis& found) {
     for (const diagnosis::Rival& rival : found.rivals) {
       const std::string set = diagnosis::words_of_set(rival.effects) +
                               (rival.effects.empty() ? "" : fmt::format(" at {}", fmt::join(rival.edges, ", ")));
-      text += fmt::format("    {:<44} {:.2f}\n", set, rival.probability);
+      text += fmt::format("    {:<44} probability {:.2f}\n", set, rival.probability);
     }
   }
   for (std::size_t i = 0; i < found.edges.size() && i < 5; ++i) {
     text += fmt::format(
-        "  edge {:<20} {:.0f} %{}\n", found.edges[i].edge, 100.0 * found.edges[i].share,
-        found.edges[i].group.empty() ? "" : fmt::format("  (as {})", fmt::join(found.edges[i].group, ", ")));
+        "  edge {:<20} {} of the gap{}\n", found.edges[i].edge, closed_percent(found.edges[i].share),
+        found.edges[i].group.empty() ? "" : fmt::format(", as at {}", fmt::join(found.edges[i].group, ", ")));
   }
   for (const diagnosis::CutFinding& cut : found.cuts) {
     text += fmt::format("  {} {}\n", cut.signal,
@@ -162,7 +182,7 @@ std::string diagnosis_text(const Diagnosis& found) {
     text += "  note: " + warning + "\n";
   }
   for (const diagnosis::Decision& one : found.decisions) {
-    text += fmt::format("  rule: {}{}: {:.3g}, threshold {:.3g}{}: {}\n", one.rule,
+    text += fmt::format("  rule: {}{}: measured {:.3g}, threshold {:.3g}{}: {}\n", one.rule,
                         one.about.empty() ? "" : fmt::format(" ({})", one.about), one.measured, one.threshold,
                         one.unit == "1" ? "" : " " + one.unit, one.outcome);
   }

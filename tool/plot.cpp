@@ -9,10 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "records/read.hpp"
+#include "records/uneven_record.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
-#include "support/shell_words.hpp"
 #include "support/text_file.hpp"
 #include "support/trimmed.hpp"
 #include "tool/commands.hpp"
@@ -32,7 +31,8 @@ constexpr std::string_view plot_examples = R"(Examples:
 
 The ending of --out says what is drawn: .svg, .png, or .html, a page with zoom that needs nothing beside itself.
 Columns of the same name are drawn together, in the unit of the first file. Signals of whole numbers that change seldom,
-such as BOOL, are drawn as steps; what is no number is a gap. Of many rows, the extremes of each pixel are drawn.
+such as BOOL, are drawn as steps; what is no number is a gap. Of many rows, the extremes of each pixel are drawn. Uneven
+times are drawn as they are, and where rows are missing there is a gap.
 Exit codes: 0 drawn; 2 a file cannot be read, or nothing is there to draw.
 )";
 
@@ -94,22 +94,6 @@ std::pair<std::string, std::string> pair_of(const std::string& text) {
   return {x, y};
 }
 
-/// A record of uneven times is refused here; another command draws it as it is.
-records::Record read_even(const std::string& file, const std::string& bytes, const records::ReadOptions& reading) {
-  try {
-    return records::parse_record(file, bytes, reading);
-  } catch (const InputError& refused) {
-    Diagnostics told;
-    for (Diagnostic one : refused.diagnostics().all()) {
-      if (one.number == error::uneven_time) {
-        one.mend += fmt::format(" As it is, `hysteron record {} --picture X.svg` draws it.", shell_word(file));
-      }
-      told.add(std::move(one));
-    }
-    throw InputError(std::move(told));
-  }
-}
-
 std::vector<NamedRecord> records_of(const PlotOptions& options, Console& console) {
   const records::ReadOptions reading = read_options(with_settings_of(options.parameters, options.record));
   const std::vector<std::string> names = short_names(options.files);
@@ -117,18 +101,20 @@ std::vector<NamedRecord> records_of(const PlotOptions& options, Console& console
   for (std::size_t i = 0; i < options.files.size(); ++i) {
     const std::string bytes = read_text_file(options.files[i]);
     console.sources().put(options.files[i], bytes);
-    records.push_back({.name = names[i], .record = read_even(options.files[i], bytes, reading)});
-    const records::Record& record = records.back().record;
-    if (record.columns().empty()) {
+    records.push_back({.name = names[i], .record = records::parse_as_recorded(options.files[i], bytes, reading)});
+    if (records.back().record.columns().empty()) {
       throw InputError(error::bad_usage, {.file = options.files[i]},
                        fmt::format("{} has no column of numbers.", options.files[i]),
                        fmt::format("`hysteron record {}` says what was understood of it.", options.files[i]));
     }
+  }
+  bring_to_one_unit(records);
+  for (const auto& [name, record] : records) {
     for (const std::string& note : record.notes()) {
-      Console::note(options.files[i], note);
+      Console::note(record.file(), note);
     }
     for (const records::Record::Unreadable& one : record.unreadable()) {
-      Console::note(options.files[i], fmt::format("{} is left out: {}", one.name, one.fault.cause));
+      Console::note(record.file(), fmt::format("{} is left out: {}", one.name, one.fault.cause));
     }
   }
   return records;

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <variant>
 
 #include "codegen/graph/unit.hpp"
 #include "plots/thinned.hpp"
+#include "records/uneven_record.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -19,8 +21,16 @@ using plots::Curve;
 using plots::Figure;
 using plots::FigurePanel;
 
-std::vector<double> times_of(const records::Record& record) {
-  return {record.time().begin(), record.time().end()};
+/// A curve over the times of a record. Where rows are missing it has a gap: nobody measured a line over it.
+void take_rows(const records::Record& record, const std::vector<double>& values, Curve& curve) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (k > 0 && records::rows_missing_before(record.time(), k, record.sample_time()) > 0) {
+      curve.x.push_back(0.5 * (record.time()[k - 1] + record.time()[k]));
+      curve.y.push_back(std::nan(""));
+    }
+    curve.x.push_back(record.time()[k]);
+    curve.y.push_back(values[k]);
+  }
 }
 
 /// What the values of a column are multiplied by, to be in a unit; 1 where either is not known.
@@ -114,26 +124,58 @@ std::vector<double> values_in_unit(const std::string& unit, const records::Colum
   return values;
 }
 
+const records::Column* readable(const records::Record& record, const std::string& name) {
+  const auto found = std::ranges::find_if(
+      record.columns(), [&](const records::Column& column) { return equal_ignoring_case(column.name, name); });
+  return found == record.columns().end() ? nullptr : &*found;
+}
+
+void bring_to_one_unit(std::span<NamedRecord> records) {
+  for (NamedRecord& later : records) {
+    for (const std::string& name : later.record.names()) {
+      const auto first = std::ranges::find_if(records, [&](const NamedRecord& one) {
+        const records::Column* const column = readable(one.record, name);
+        return &one == &later || (column != nullptr && !column->unit.empty());
+      });
+      const records::Column& column = later.record.column(name);
+      if (&*first == &later) {
+        continue;
+      }
+      const std::string unit = first->record.column(name).unit;
+      if (column.unit.empty()) {
+        later.record.note(fmt::format("column {} has no unit, and is taken to be in {}, as in {}", column.name, unit,
+                                      first->record.file()));
+      } else if (const double factor = factor_to(unit, column, later.record); factor != 1.0) {
+        later.record.note(fmt::format("column {} is in {}, and was converted to {}, as in {}: times {}", column.name,
+                                      column.unit, unit, first->record.file(), number_text(factor)));
+        later.record.convert(name, factor, unit);
+      }
+    }
+  }
+}
+
 Figure figure_over_time(std::span<const NamedRecord> records, const std::vector<std::string>& chosen) {
   Figure figure{.title = names_of(records)};
   for (const std::string& name : columns_of(records, chosen)) {
     FigurePanel panel{.title = name, .x_label = "t [s]"};
     std::string unit;
     for (std::size_t i = 0; i < records.size(); ++i) {
-      const records::Column* const column = records[i].record.find(name);
+      const records::Column* const column =
+          chosen.empty() ? readable(records[i].record, name) : records[i].record.find(name);
       if (column == nullptr) {
         continue;
       }
       unit = unit.empty() ? column->unit : unit;
-      panel.curves.push_back({.name = records[i].name,
-                              .x = times_of(records[i].record),
-                              .y = values_in_unit(unit, *column, records[i].record),
-                              .stroke = plots::is_of_steps(column->values) ? plots::Stroke::Steps : plots::Stroke::Line,
-                              .colour = i});
+      Curve& curve = panel.curves.emplace_back(
+          Curve{.name = records[i].name,
+                .stroke = plots::is_of_steps(column->values) ? plots::Stroke::Steps : plots::Stroke::Line,
+                .colour = i});
+      take_rows(records[i].record, values_in_unit(unit, *column, records[i].record), curve);
     }
     panel.y_label = plots::axis_label(name, unit);
     figure.panels.push_back(panel);
-    if (records.size() == 2 && panel.curves.size() == 2 && have_same_times(records[0].record, records[1].record)) {
+    if (records.size() == 2 && panel.curves.size() == 2 && have_same_times(records[0].record, records[1].record) &&
+        panel.curves[0].x.size() == panel.curves[1].x.size()) {
       figure.panels.push_back(difference_of(panel));
     }
   }

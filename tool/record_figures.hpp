@@ -17,11 +17,18 @@ struct NamedRecord {
   records::Record record;
 };
 
-/// Each column over time in a panel of its own, the same column of several records together. Of two records with the
+/// Each column over time in a panel of its own, with a gap where rows are missing, the same column of several records together. Of two records with the
 /// same times, what the second has more than the first is a panel below. Units of the second are brought to those of
 /// the first. Throws InputError: HY502 for a chosen column that none has, HY729 where units of two do not meet.
 [[nodiscard]] plots::Figure figure_over_time(std::span<const NamedRecord> records,
                                              const std::vector<std::string>& chosen = {});
+
+/// Null where the record has no such column, or one that holds something else than numbers.
+[[nodiscard]] const records::Column* readable(const records::Record& record, const std::string& name);
+
+/// Brings columns of one name to the unit that they have in the first of the records that states one, and notes it.
+/// Throws InputError HY729 where one cannot be brought there.
+void bring_to_one_unit(std::span<NamedRecord> records);
 
 /// The values of a column in a unit, where both are known; as they are where one is not. Throws InputError HY729 where
 /// one cannot be brought to the other.

@@ -29,8 +29,10 @@ void add_record_options(CLI::App& app, RecordOptions& options) {
       ->option_text("point|comma");
   app.add_option("--resample", options.resample,
                  "Brings uneven times, or another rate, to the diagram's sample time: linear for slow analog signals, "
-                 "hold for encoders and commands, average for noisy signals at a higher rate.")
-      ->option_text("linear|hold|average");
+                 "hold for encoders and commands, average for noisy signals at a higher rate. U=hold says it of one "
+                 "signal; may be repeated.")
+      ->option_text("linear|hold|average|U=hold")
+      ->allow_extra_args(false);
 }
 
 std::string record_arguments(const RecordOptions& options) {
@@ -41,20 +43,24 @@ std::string record_arguments(const RecordOptions& options) {
   for (const std::string& column : options.columns) {
     text += " --column " + shell_word(column);
   }
+  for (const std::string& way : options.resample) {
+    text += " --resample " + shell_word(way);
+  }
   return text;
 }
 
-void say_what_was_read(const records::Record& record, const Program& program, bool tell_unused) {
-  for (const std::string& note : what_was_read(record, program, tell_unused)) {
+void say_what_was_read(const records::Record& record, const Program& program, bool tell_unused, std::string_view used) {
+  for (const std::string& note : what_was_read(record, program, tell_unused, used)) {
     Console::note(record.file(), note);
   }
 }
 
 std::vector<records::Record> read_and_told(const std::vector<std::string>& logs, const RecordOptions& options,
-                                           const Program& program, bool tell_unused, Diagnostics& diagnostics) {
+                                           const Program& program, bool tell_unused, Diagnostics& diagnostics,
+                                           std::string_view used) {
   std::vector<records::Record> records = read_measured_records(logs, options, program, diagnostics);
   for (const records::Record& record : records) {
-    say_what_was_read(record, program, tell_unused);
+    say_what_was_read(record, program, tell_unused, used);
   }
   return records;
 }

@@ -20,11 +20,13 @@ void add_record_options(CLI::App& app, RecordOptions& options);
 [[nodiscard]] std::string record_arguments(const RecordOptions& options);
 
 /// Prints what was understood of a record.
-void say_what_was_read(const records::Record& record, const Program& program, bool tell_unused);
+void say_what_was_read(const records::Record& record, const Program& program, bool tell_unused,
+                       std::string_view used = {});
 
 /// Reads measured records for a diagram, as read_measured_records does, and prints what was understood.
 [[nodiscard]] std::vector<records::Record> read_and_told(const std::vector<std::string>& logs,
                                                          const RecordOptions& options, const Program& program,
-                                                         bool tell_unused, Diagnostics& diagnostics);
+                                                         bool tell_unused, Diagnostics& diagnostics,
+                                                         std::string_view used = {});
 
 }  // namespace hysteron::tool

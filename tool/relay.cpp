@@ -27,7 +27,8 @@ constexpr std::string_view relay_examples = R"(Examples:
 
 The record is that of a relay in place of the controller: U jumps between two levels, Y oscillates, and at least four
 oscillations are in it. Where it begins at rest, and the relay is not symmetric about that, the static gain is told too,
-and with it a lag with a dead time. --out writes the values of a PID to begin with, as a file for `hysteron tune`.
+and with it a lag with a dead time. Gains are in the units of the record's columns: those of the diagram have to be the
+same, or --column U=NAME[mV] states them. --out writes the values of a PID to begin with, as a file for `hysteron tune`.
 Exit codes: 0 done; 2 no relay experiment, or bad usage.
 )";
 
@@ -41,26 +42,29 @@ struct RelayOptions {
   bool json = false;
 };
 
-std::string controller_text(const std::string& name, const ControllerStart& start) {
-  return fmt::format("{:<4} KP = {:.4g}, TR = {:.4g} s{}\n", name, start.gain, start.reset_time,
+std::string controller_text(const std::string& name, const ControllerStart& start, const std::string& unit) {
+  return fmt::format("{:<4} KP = {:.4g}{}, TR = {:.4g} s{}\n", name, start.gain, unit_behind(unit), start.reset_time,
                      start.rate_time > 0.0 ? fmt::format(", TD = {:.4g} s", start.rate_time) : "");
 }
 
-std::string relay_text(const RelayExperiment& relay, const std::string& u_unit, const std::string& y_unit) {
+std::string relay_text(const RelayExperiment& relay) {
+  const std::string& y_unit = relay.y_unit;
+  const std::string of_process = unit_behind(relay.process_unit());
+  const std::string of_controller = relay.controller_unit();
   std::string text = fmt::format(
       "relay       {:.4g} to {:.4g}{}, {:.0f} % of the time high, hysteresis {:.3g}{}\n"
       "oscillation {} cycles of {:.4g} s (spread {:.1f} %), amplitude {:.4g}{}\n"
-      "process     gain {:.4g} at {:.4g} rad/s, phase {:.1f} deg{}\n"
-      "ultimate    gain Ku = {:.4g}, period Tu = {:.4g} s\n",
-      relay.low, relay.high, unit_behind(u_unit), 100.0 * relay.duty, relay.hysteresis, unit_behind(y_unit),
-      relay.cycles, relay.period, 100.0 * relay.spread, relay.amplitude, unit_behind(y_unit), relay.gain,
+      "process     gain {:.4g}{} at {:.4g} rad/s, phase {:.1f} deg{}\n"
+      "ultimate    gain Ku = {:.4g}{}, period Tu = {:.4g} s\n",
+      relay.low, relay.high, unit_behind(relay.u_unit), 100.0 * relay.duty, relay.hysteresis, unit_behind(y_unit),
+      relay.cycles, relay.period, 100.0 * relay.spread, relay.amplitude, unit_behind(y_unit), relay.gain, of_process,
       2.0 * std::numbers::pi / relay.period, relay.phase, relay.direction < 0.0 ? ", and it falls with the relay" : "",
-      relay.ultimate_gain, relay.ultimate_period);
-  text += relay.model ? fmt::format("model       K = {:.4g}, T = {:.4g} s, dead time {:.4g} s\n", relay.model->gain,
-                                    relay.model->time, relay.model->dead_time)
+      relay.ultimate_gain, unit_behind(of_controller), relay.ultimate_period);
+  text += relay.model ? fmt::format("model       K = {:.4g}{}, T = {:.4g} s, dead time {:.4g} s\n", relay.model->gain,
+                                    of_process, relay.model->time, relay.model->dead_time)
                       : fmt::format("model       none: {}\n", relay.why_no_model);
-  return text + "start       " + controller_text("PI", relay.pi()) + "            " +
-         controller_text("PID", relay.pid());
+  return text + "start       " + controller_text("PI", relay.pi(), of_controller) + "            " +
+         controller_text("PID", relay.pid(), of_controller);
 }
 
 int relay(const RelayOptions& options, Console& console) {
@@ -69,13 +73,15 @@ int relay(const RelayOptions& options, Console& console) {
     refuse_unwritable(options.output);
   }
   const records::Record record = records::read_record(options.file, read_options(options.record));
+  for (const std::string& note : record.notes()) {
+    Console::note(record.file(), note);
+  }
   const RelayExperiment found = relay_experiment(record, options.u, options.y);
   const std::string parameters = relay_parameters(found, options.controller, options.file);
   if (!options.output.empty()) {
     write_files_atomically({{.path = options.output, .contents = parameters}});
   }
-  console.print(options.json ? relay_json(found).dump(2) + "\n"
-                             : relay_text(found, record.column(options.u).unit, record.column(options.y).unit));
+  console.print(options.json ? relay_json(found).dump(2) + "\n" : relay_text(found));
   return exit_ok;
 }
 

@@ -8,7 +8,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "codegen/program_hash.hpp"
@@ -171,7 +173,11 @@ CaseResult run_case(std::size_t number, const PlannedCase& planned, const Genera
       result.note = "wrote " + planned.golden.string();
     }
   } else if (!planned.golden.empty() && !update) {
-    append(result.failures, judge_golden(planned, outputs));
+    std::vector<std::string> notes;
+    append(result.failures, judge_golden(planned, outputs, notes));
+    for (const std::string& note : notes) {
+      Console::note(planned.golden.string(), note);
+    }
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   return result;
@@ -273,6 +279,14 @@ FileResult run_file(const std::string& diagram, const std::string& tests, const 
     refuse_to_overwrite(cases, inputs_of(diagram, tests, file, false));
   }
   console.report(diagnostics);
+  std::set<std::pair<std::string, std::string>> said;  // of a record that several cases take, once
+  for (const PlannedCase& planned : cases) {
+    for (const auto& note : planned.notes) {
+      if (said.insert(note).second) {
+        Console::note(note.first, note.second);
+      }
+    }
+  }
   std::optional<GeneratedPrograms> generated;
   Progress progress("Testing");
   if (!options.no_generated && !cases.empty()) {

@@ -27,7 +27,7 @@ void add_golden(const PlannedCase& planned, std::vector<StExpectation>& expected
   if (!fs::exists(planned.golden, unknown)) {
     refuse_golden(planned, "is missing");
   }
-  const records::Record golden = records::read_record(planned.golden.string());
+  const records::Record golden = golden_record(planned);
   if (golden.size() != planned.drive.steps) {
     refuse_golden(planned, fmt::format("has {} rows, the case {} steps", golden.size(), planned.drive.steps));
   }

@@ -11,6 +11,7 @@
 #include "tool/compiled.hpp"
 #include "tool/output_record.hpp"
 #include "tool/test_plot.hpp"
+#include "tuning/record_units.hpp"
 #include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {
@@ -93,6 +94,16 @@ std::vector<Failure> judge_bits(const PlannedCase& planned, const std::vector<Si
   return failures;
 }
 
+records::Record golden_record(const PlannedCase& planned) {
+  records::Record golden = records::read_record(planned.golden.string());
+  Diagnostics diagnostics;
+  convert_units(golden, planned.program, diagnostics);
+  if (diagnostics.has_errors()) {
+    throw InputError(diagnostics);
+  }
+  return golden;
+}
+
 ValuesByStep golden_values(const records::Column& column) {
   ValuesByStep values;
   for (std::size_t k = 0; k < column.values.size(); ++k) {
@@ -101,14 +112,16 @@ ValuesByStep golden_values(const records::Column& column) {
   return values;
 }
 
-std::vector<Failure> judge_golden(const PlannedCase& planned, const std::vector<Signal>& outputs) {
+std::vector<Failure> judge_golden(const PlannedCase& planned, const std::vector<Signal>& outputs,
+                                  std::vector<std::string>& notes) {
   const auto name = planned.golden.string();
   const auto failure = [](std::string cause) { return std::vector{Failure{.cause = std::move(cause), .plot = {}}}; };
   std::error_code unknown;
   if (!std::filesystem::exists(planned.golden, unknown)) {
     return failure(fmt::format("the golden record {} is missing; write it with --update, and look it over", name));
   }
-  const records::Record golden = records::read_record(name);
+  const records::Record golden = golden_record(planned);
+  notes.insert(notes.end(), golden.notes().begin(), golden.notes().end());
   if (golden.size() != planned.drive.steps) {
     return failure(fmt::format("the golden record {} has {} rows, the case {} steps; write it anew with --update", name,
                                golden.size(), planned.drive.steps));

@@ -22,8 +22,12 @@ struct Failure {
 [[nodiscard]] std::vector<Failure> judge_bits(const PlannedCase& planned, const std::vector<Signal>& interpreted,
                                               const std::vector<Signal>& generated);
 
-/// Outputs against the golden record.
-[[nodiscard]] std::vector<Failure> judge_golden(const PlannedCase& planned, const std::vector<Signal>& outputs);
+/// Outputs against the golden record. What was understood of it is added to `notes`.
+[[nodiscard]] std::vector<Failure> judge_golden(const PlannedCase& planned, const std::vector<Signal>& outputs,
+                                                std::vector<std::string>& notes);
+
+/// The golden record, in the units of the diagram. Throws InputError HY729 where they do not meet.
+[[nodiscard]] records::Record golden_record(const PlannedCase& planned);
 
 /// What a column of a golden record says of an output.
 [[nodiscard]] ValuesByStep golden_values(const records::Column& column);

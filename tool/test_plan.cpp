@@ -128,6 +128,9 @@ class CasePlan {
     if (!test().csv.text.empty()) {
       record_ = read_named(test().csv, folder_, [](const std::string& path) { return records::read_record(path); });
       convert_units(*record_, planned_.program, diagnostics_);
+      for (const std::string& note : record_->notes()) {
+        planned_.notes.emplace_back(record_->file(), note);
+      }
       settle_sample_time(*record_, planned_.program, diagnostics_);
       const auto rows = record_->size();
       if (test().steps.value_or(0) > rows) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "codegen/compile.hpp"
@@ -27,6 +28,7 @@ struct PlannedCase {
   std::vector<double> time{};
   std::vector<ExpectedOutput> expected{};
   std::filesystem::path golden{};  ///< empty: none
+  std::vector<std::pair<std::string, std::string>> notes{};  ///< what was understood of its record: file, sentence
 };
 
 /// Plans the cases of one file. The diagram is compiled once for each top block. Files that a case names are looked for

@@ -37,8 +37,13 @@ int tune_goal(const TuneOptions& options, const parameters::ParameterFile& file,
   const std::vector<records::Record> records =
       options.logs.empty()
           ? std::vector<records::Record>()
-          : read_and_told(options.logs, with_settings(options.record, file.record), program, true, warnings);
+          : read_and_told(options.logs, with_settings(options.record, file.record), program, true, warnings,
+                          file.goal.wished ? std::string_view(file.goal.wished->text) : std::string_view());
   const GoalProblem problem = goal_problem(program, file, records);
+  for (const std::string& note : problem.notes) {
+    Console::note(records.front().file(), note);
+  }
+  warnings.add_all(problem.found);
   GoalResult result;
   {
     const InterruptWatch watch;

@@ -31,6 +31,17 @@ const Port& port_of(const TuneReport& report, std::size_t output) {
   return report.problem.program.graph.outputs[report.problem.outputs[output]];
 }
 
+/// A command that breaks between words alone: a browser breaks behind each hyphen.
+std::string words_of(std::string_view command) {
+  std::string html;
+  while (!command.empty()) {
+    const auto end = std::min(command.find(' '), command.size());
+    html += fmt::format("{}<span>{}</span>", html.empty() ? "" : " ", escaped(command.substr(0, end)));
+    command.remove_prefix(std::min(end + 1, command.size()));
+  }
+  return html;
+}
+
 std::string head_of(const TuneReport& report) {
   const OutputErrorFit& fit = report.fit;
   std::string html = "<section class=\"verdict\">\n<p class=\"summary\">";
@@ -46,8 +57,8 @@ std::string head_of(const TuneReport& report) {
   if (const std::string missing = unexplained(report); !missing.empty()) {
     html += fmt::format(
         "<div class=\"box warnings\"><h2>Something is not in the model</h2>\n<p>{}</p>\n<p>This looks for the "
-        "cause:</p>\n<pre>{}</pre></div>\n",
-        escaped(missing), escaped(report.diagnose_command));
+        "cause:</p>\n<pre class=\"command\">{}</pre></div>\n",
+        escaped(missing), words_of(report.diagnose_command));
   }
   if (!fit.covariance.warnings.empty()) {
     html += "<div class=\"box warnings\"><h2>What the record tells of the parameters</h2>\n<ul>\n";

@@ -26,8 +26,16 @@
 namespace hysteron {
 namespace {
 
-[[noreturn]] void refuse(std::string_view option, std::string_view given, std::string mend) {
-  throw InputError(error::bad_usage, {}, fmt::format("{} {} cannot be read.", option, given), std::move(mend));
+/// An option is `--rate`, a setting of a parameter file `rate`, at its place.
+[[noreturn]] void refuse(const RecordOptions& options, std::string_view option, const std::string& given,
+                         std::string mend) {
+  for (const auto& key : {std::string(option), fmt::format("{} {}", option, given)}) {
+    if (const auto found = options.places.find(key); found != options.places.end()) {
+      throw InputError(error::bad_usage, found->second,
+                       fmt::format("{} = \"{}\" in [record] cannot be read.", option, given), std::move(mend));
+    }
+  }
+  throw InputError(error::bad_usage, {}, fmt::format("--{} {} cannot be read.", option, given), std::move(mend));
 }
 
 /// `2`, `2s`, `250 ms`, `1kHz` as a number in the unit wanted; a bare number is in it already.
@@ -58,11 +66,12 @@ std::optional<double> quantity(std::string_view text, std::string_view wanted) {
 }
 
 /// `a..b`, of which either may be missing.
-std::pair<std::string_view, std::string_view> ends_of(std::string_view option, std::string_view text,
-                                                      const std::string& mend) {
+std::pair<std::string_view, std::string_view> ends_of(const RecordOptions& options, std::string_view option,
+                                                      const std::string& given, const std::string& mend) {
+  const std::string_view text = given;
   const auto dots = text.find("..");
   if (dots == std::string_view::npos || text.size() == 2) {
-    refuse(option, text, mend);
+    refuse(options, option, given, mend);
   }
   return {trimmed(text.substr(0, dots)), trimmed(text.substr(dots + 2))};
 }
@@ -85,25 +94,62 @@ std::pair<std::string, std::string> name_and_unit(std::string_view given) {
 void take_range(const RecordOptions& options, records::ReadOptions& result) {
   if (!options.range.empty()) {
     const std::string mend = "write the times of begin and end, such as --range 2s..8s; either may be left out.";
-    const auto [begin, end] = ends_of("--range", options.range, mend);
+    const auto [begin, end] = ends_of(options, "range", options.range, mend);
     result.begin = quantity(begin, "s");
     result.end = quantity(end, "s");
     if ((!begin.empty() && !result.begin) || (!end.empty() && !result.end) ||
         (result.begin && result.end && !(*result.begin < *result.end))) {
-      refuse("--range", options.range, mend);
+      refuse(options, "range", options.range, mend);
     }
   }
   if (!options.rows.empty()) {
     const std::string mend =
         "write the first and the last row of numbers, such as --rows 1..60; either may be left out.";
-    const auto [first, last] = ends_of("--rows", options.rows, mend);
+    const auto [first, last] = ends_of(options, "rows", options.rows, mend);
     const auto from = whole(first);
     result.last_row = whole(last);
     if ((!first.empty() && !from) || (!last.empty() && !result.last_row) ||
         (from && result.last_row && *from >= *result.last_row)) {
-      refuse("--rows", options.rows, mend);
+      refuse(options, "rows", options.rows, mend);
     }
     result.first_row = from.value_or(1);
+  }
+}
+
+}  // namespace
+
+namespace {
+
+/// The name before the equals sign: that of U=MAIN.u, of Q=hold; nothing of hold, which says it of all.
+std::string_view name_before(std::string_view text) {
+  const auto equals = text.find('=');
+  return equals == std::string_view::npos ? std::string_view() : trimmed(text.substr(0, equals));
+}
+
+bool has_name(const std::vector<std::string>& texts, std::string_view name) {
+  return std::ranges::any_of(texts,
+                             [&](const std::string& one) { return equal_ignoring_case(name_before(one), name); });
+}
+
+/// What `--resample` says, of all signals or of one.
+void take_resampling(const RecordOptions& options, bool is_general, records::ReadOptions& result) {
+  for (const std::string& text : is_general ? options.general_resample : options.resample) {
+    const auto equals = text.rfind('=');
+    const bool of_one = equals != std::string::npos;
+    const std::string name(trimmed(std::string_view(text).substr(0, of_one ? equals : 0)));
+    const auto way = records::resampling_of(trimmed(std::string_view(text).substr(of_one ? equals + 1 : 0)));
+    if (!way || (of_one && name.empty())) {
+      refuse(options, "resample", text, "the ways are linear, hold and average; of one signal, --resample U=hold.");
+    }
+    if (of_one) {
+      result.ways.push_back({.name = name, .way = *way, .is_general = is_general});
+    } else if (result.resampling != records::Resampling::None && result.resampling != *way) {
+      refuse(options, "resample", text,
+             fmt::format("{} is stated as well: state one way for all, and others by name, as --resample U={}.",
+                         records::name_of(result.resampling), text));
+    } else {
+      result.resampling = *way;
+    }
   }
 }
 
@@ -112,17 +158,23 @@ void take_range(const RecordOptions& options, records::ReadOptions& result) {
 RecordOptions with_settings(RecordOptions options, const parameters::RecordSettings& settings) {
   const auto texts = texts_of(options);
   for (const auto& [key, value] : settings.settings) {
+    if (key == "resample") {
+      if (!has_name(options.resample, name_before(value.text))) {
+        options.general_resample.push_back(value.text);
+        options.places.emplace("resample " + value.text, value.place);
+      }
+      continue;
+    }
     const auto* const found = std::ranges::find_if(texts, [&key = key](const auto& text) { return text.first == key; });
     if (found != texts.end() && found->second->empty()) {
       *found->second = value.text;
+      options.places.emplace(key, value.place);
     }
   }
   for (const auto& [name, value] : settings.columns) {
-    const auto is_given = [&name = name](const std::string& one) {
-      return equal_ignoring_case(trimmed(std::string_view(one).substr(0, one.find('='))), name);
-    };
-    if (std::ranges::none_of(options.columns, is_given)) {
+    if (!has_name(options.columns, name)) {
       options.general_columns.push_back(fmt::format("{}={}", name, value.text));
+      options.places.emplace("column " + options.general_columns.back(), value.place);
     }
   }
   return options;
@@ -138,7 +190,8 @@ records::ReadOptions read_options(const RecordOptions& options, const Program* p
   if (!options.skip.empty()) {
     const auto lines = whole(options.skip);
     if (!lines) {
-      refuse("--skip", options.skip, "write how many lines at the top are no part of the record, such as --skip 3.");
+      refuse(options, "skip", options.skip,
+             "write how many lines at the top are no part of the record, such as --skip 3.");
     }
     result.skip = *lines;
   }
@@ -151,7 +204,7 @@ records::ReadOptions read_options(const RecordOptions& options, const Program* p
       result.rate = period && *period > 0.0 ? std::optional(1.0 / *period) : std::nullopt;
     }
     if (!result.rate || !(*result.rate > 0.0)) {
-      refuse("--rate", options.rate,
+      refuse(options, "rate", options.rate,
              "write how many rows a second has, such as --rate 1kHz, or the time of a row, 1ms.");
     }
   }
@@ -159,7 +212,8 @@ records::ReadOptions read_options(const RecordOptions& options, const Program* p
     for (const std::string& one : *columns) {
       const auto equals = one.find('=');
       if (equals == std::string::npos || equals == 0 || equals + 1 == one.size()) {
-        refuse("--column", one, "write the name in the diagram and that in the file, such as --column U=MAIN.u.");
+        refuse(options, "column", one,
+               "write the name in the diagram and that in the file, such as --column U=MAIN.u.");
       }
       auto [in_file, unit] = name_and_unit(std::string_view(one).substr(equals + 1));
       result.columns.push_back({.name = std::string(trimmed(std::string_view(one).substr(0, equals))),
@@ -170,24 +224,29 @@ records::ReadOptions read_options(const RecordOptions& options, const Program* p
   }
   if (!options.decimal.empty()) {
     if (!equal_ignoring_case(options.decimal, "point") && !equal_ignoring_case(options.decimal, "comma")) {
-      refuse("--decimal", options.decimal, "write --decimal point or --decimal comma.");
+      refuse(options, "decimal", options.decimal, "write --decimal point or --decimal comma.");
     }
     result.decimal = equal_ignoring_case(options.decimal, "point") ? '.' : ',';
   }
-  if (!options.resample.empty()) {
-    const auto way = records::resampling_of(options.resample);
-    if (!way) {
-      refuse("--resample", options.resample, "the ways are: linear, hold, average.");
-    }
-    result.resampling = *way;
-    if (program != nullptr && program->graph.sample_time_ns > 0) {
+  take_resampling(options, false, result);
+  take_resampling(options, true, result);
+  if (result.resamples() && program != nullptr) {
+    if (program->graph.sample_time_ns > 0) {
       result.sample_time = program->graph.sample_time();
+    }
+    for (const auto* const ports : {&program->graph.inputs, &program->graph.outputs}) {
+      for (const Port& port : *ports) {
+        if (port.type != Type::Real) {
+          result.stepping.push_back(port.name);
+        }
+      }
     }
   }
   return result;
 }
 
-std::vector<std::string> what_was_read(const records::Record& record, const Program& program, bool tell_unused) {
+std::vector<std::string> what_was_read(const records::Record& record, const Program& program, bool tell_unused,
+                                       std::string_view used) {
   std::vector<std::string> notes = record.notes();
   const Graph& graph = program.graph;
   for (const Port& input : graph.inputs) {
@@ -199,7 +258,8 @@ std::vector<std::string> what_was_read(const records::Record& record, const Prog
   std::vector<std::string> unused;
   for (const std::string& name : record.names()) {
     const auto same = [&](const Port& port) { return equal_ignoring_case(port.name, name); };
-    if (std::ranges::none_of(graph.inputs, same) && std::ranges::none_of(graph.outputs, same)) {
+    if (std::ranges::none_of(graph.inputs, same) && std::ranges::none_of(graph.outputs, same) &&
+        !equal_ignoring_case(name, used)) {
       unused.push_back(name);
     }
   }

@@ -112,6 +112,27 @@ ControllerStart RelayExperiment::pid() const {
       .gain = direction * ultimate_gain / 2.2, .reset_time = 2.2 * ultimate_period, .rate_time = ultimate_period / 6.3};
 }
 
+namespace {
+
+/// V over m/s is V/(m/s).
+std::string quotient(const std::string& upper, const std::string& lower) {
+  if (upper.empty() || lower.empty()) {
+    return "";
+  }
+  const bool is_compound = lower.find_first_of("*/ ") != std::string::npos;
+  return is_compound ? fmt::format("{}/({})", upper, lower) : fmt::format("{}/{}", upper, lower);
+}
+
+}  // namespace
+
+std::string RelayExperiment::controller_unit() const {
+  return quotient(u_unit, y_unit);
+}
+
+std::string RelayExperiment::process_unit() const {
+  return quotient(y_unit, u_unit);
+}
+
 RelayExperiment relay_experiment(std::span<const double> u, std::span<const double> y, double sample_time,
                                  const std::string& file) {
   const Levels levels = levels_of(u, file);
@@ -183,7 +204,10 @@ RelayExperiment relay_experiment(const records::Record& record, const std::strin
                      fmt::format("The relay and the process value are one column, {}.", of_process.name),
                      "name the column that the relay wrote, and that of the process value.");
   }
-  return relay_experiment(of_relay.values, of_process.values, record.sample_time(), record.file());
+  RelayExperiment result = relay_experiment(of_relay.values, of_process.values, record.sample_time(), record.file());
+  result.u_unit = of_relay.unit;
+  result.y_unit = of_process.unit;
+  return result;
 }
 
 }  // namespace hysteron

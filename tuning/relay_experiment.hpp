@@ -36,6 +36,8 @@ struct ControllerStart {
 };
 
 struct RelayExperiment {
+  std::string u_unit{};  ///< as the record states them; empty where it does not
+  std::string y_unit{};
   double low = 0.0;  ///< the two levels of u
   double high = 0.0;
   int cycles = 0;           ///< that were used, whole ones
@@ -51,6 +53,10 @@ struct RelayExperiment {
   double ultimate_period = 0.0;            ///< s
   std::optional<FirstOrderModel> model{};  ///< none where the record does not tell G(0), or no such model passes there
   std::string why_no_model{};
+
+  /// Of the ultimate gain, and of KP: u over y; of the process the other way round. Empty where one is not known.
+  [[nodiscard]] std::string controller_unit() const;
+  [[nodiscard]] std::string process_unit() const;
 
   /// By the rules of B. D. Tyreus, W. L. Luyben (Ind. Eng. Chem. Res. 31 (1992) 2625), which damp well.
   [[nodiscard]] ControllerStart pi() const;

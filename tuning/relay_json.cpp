@@ -7,6 +7,7 @@
 #include "codegen/parameters/parameter_file.hpp"
 #include "codegen/parameters/parameter_names.hpp"
 #include "support/errors.hpp"
+#include "support/names.hpp"
 
 namespace hysteron {
 namespace {
@@ -60,9 +61,13 @@ std::string relay_parameters(const RelayExperiment& relay, const std::string& co
   add("KP", start.gain);
   add("TR", start.reset_time);
   add("TD", start.rate_time);
-  return parameters::parameter_text(result, {},
-                                    fmt::format("From the relay experiment {}: Ku = {:.4g}, Tu = {:.4g} s.", file,
-                                                relay.ultimate_gain, relay.ultimate_period));
+  const std::string unit = relay.controller_unit();
+  parameters::Remarks remarks;
+  remarks[in_capitals("parameters." + controller + ".KP")].unit = unit;
+  return parameters::parameter_text(
+      result, remarks,
+      fmt::format("From the relay experiment {}: Ku = {:.4g}{}{}, Tu = {:.4g} s.", file, relay.ultimate_gain,
+                  unit.empty() ? "" : " ", unit, relay.ultimate_period));
 }
 
 }  // namespace hysteron

@@ -83,7 +83,7 @@ hysteron_diagnosis* hysteron_diagnose(const hysteron_diagram* diagram, const hys
         .program = *diagram->compiled,
         .text = *diagram->compiled->graph.source->text,
         .file = diagram->file,
-        .records = hysteron::bindings::in_units_of(*diagram, records, record_count, diagnostics)};
+        .records = hysteron::bindings::in_units_of(*diagram, records, record_count, false, diagnostics, call)};
     for (const std::string& column : asked.ignored) {
       input.file.diagnose.ignore.push_back({.text = column, .place = {}});
     }

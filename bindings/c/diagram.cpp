@@ -154,7 +154,14 @@ records::ReadOptions read_options_of(Options& options, const hysteron_diagram* d
   written.range = options.text("range");
   written.rows = options.text("rows");
   written.decimal = options.text("decimal");
-  written.resample = options.text("resample");
+  for (const auto& [name, way] : options.members_or_text("resample")) {
+    if (!way.is_string()) {
+      throw InputError(error::bad_usage, {}, fmt::format("The way in which {} is resampled is {}.", name, way.dump()),
+                       "give it a text: linear, hold or average.");
+    }
+    const bool of_all = name.empty() || name == "*";
+    written.resample.push_back(of_all ? way.get<std::string>() : fmt::format("{}={}", name, way.get<std::string>()));
+  }
   if (diagram != nullptr) {
     written = with_settings(std::move(written), diagram->file.record);
   }

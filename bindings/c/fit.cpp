@@ -64,8 +64,11 @@ std::unique_ptr<hysteron_fit> tuned_to_records(const hysteron_diagram& diagram,
 
 std::unique_ptr<hysteron_fit> tuned_for_goal(const hysteron_diagram& diagram,
                                              const std::vector<hysteron::records::Record>& records, int starts,
-                                             const Told& told, hysteron::Diagnostics& diagnostics) {
+                                             const Told& told, hysteron::Diagnostics& diagnostics,
+                                             hysteron::bindings::Call& call) {
   const auto problem = hysteron::goal_problem(*diagram.compiled, diagram.file, records);
+  diagnostics.add_all(problem.found);
+  call.note(records.empty() ? std::string() : records.front().file(), problem.notes);
   const hysteron::GoalOptions tuning{.starts = starts, .progress = [&](const hysteron::GoalProgress& now) {
                                        return told.goes_on(now.start, now.iteration, usual_iterations_of_goal);
                                      }};
@@ -102,11 +105,11 @@ hysteron_fit* hysteron_tune(const hysteron_diagram* diagram, const hysteron_reco
     }
     hysteron::Diagnostics diagnostics = diagram->warnings;
     hysteron::refuse_ports_named_as_time(diagnostics);
-    const auto measured = record_count == 0
-                              ? std::vector<hysteron::records::Record>()
-                              : hysteron::bindings::in_units_of(*diagram, records, record_count, diagnostics);
+    const auto measured =
+        record_count == 0 ? std::vector<hysteron::records::Record>()
+                          : hysteron::bindings::in_units_of(*diagram, records, record_count, true, diagnostics, call);
     const Told told(progress, user, starts);
-    auto result = has_goal ? tuned_for_goal(*diagram, measured, starts, told, diagnostics)
+    auto result = has_goal ? tuned_for_goal(*diagram, measured, starts, told, diagnostics, call)
                            : tuned_to_records(*diagram, measured, starts, told);
     call.warn(diagnostics);
     return result.release();

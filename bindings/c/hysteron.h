@@ -118,7 +118,8 @@ typedef struct hysteron_record hysteron_record;
 
 /* Reads a file as the tool does. With a diagram, [record] of its parameter file holds where no option does, and a record
  * is resampled to its sample time; else it is NULL. Options, as those of the tool: "time", "rate", "columns"
- * ({"U": "MAIN.u[mV]"}), "skip", "range", "rows", "decimal", "resample". */
+ * ({"U": "MAIN.u[mV]"}), "skip", "range", "rows", "decimal", "resample" ("hold", or by
+ * signal {"Q": "hold", "*": "linear"}, where * is all others). */
 HYSTERON_API hysteron_record* hysteron_record_read(const char* path, const hysteron_diagram* diagram,
                                                    const char* options, hysteron_messages** messages);
 /* A record of arrays: columns × rows numbers, column after column. Units may be NULL, and each of them. One column is

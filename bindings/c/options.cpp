@@ -116,6 +116,15 @@ std::vector<std::pair<std::string, Value>> Options::members(std::string_view key
   return result;
 }
 
+std::vector<std::pair<std::string, Value>> Options::members_or_text(std::string_view key) {
+  const auto found = object_.find(key);
+  if (found == object_.end() || !found->is_string()) {
+    return members(key);
+  }
+  known_.emplace_back(key);
+  return {{std::string(), *found}};
+}
+
 void Options::finish() const {
   for (const auto& [key, value] : object_.items()) {
     if (std::ranges::find(known_, key) == known_.end()) {

@@ -22,6 +22,8 @@ class Options {
   [[nodiscard]] std::optional<long long> whole(std::string_view key, long long least, long long most);
   [[nodiscard]] std::vector<std::string> texts(std::string_view key);
   [[nodiscard]] std::vector<std::pair<std::string, nlohmann::json>> members(std::string_view key);
+  /// The same, where a text alone is a member without a name.
+  [[nodiscard]] std::vector<std::pair<std::string, nlohmann::json>> members_or_text(std::string_view key);
 
   /// Throws InputError HY730 for a key that was not asked for.
   void finish() const;

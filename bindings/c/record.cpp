@@ -46,7 +46,7 @@ std::vector<records::NumberColumn> columns_of(size_t columns, size_t rows, const
 namespace hysteron::bindings {
 
 std::vector<records::Record> in_units_of(const hysteron_diagram& diagram, const hysteron_record* const* records,
-                                         std::size_t count, Diagnostics& diagnostics) {
+                                         std::size_t count, bool tell_unused, Diagnostics& diagnostics, Call& call) {
   if (count == 0) {
     throw InputError(error::bad_usage, {}, "There is no record.", "give one or more.");
   }
@@ -63,7 +63,11 @@ std::vector<records::Record> in_units_of(const hysteron_diagram& diagram, const 
       }
     }
     result.push_back(records[i]->record);
+    const auto read = static_cast<std::ptrdiff_t>(result.back().notes().size());  // said when it was read
     convert_units(result.back(), diagram.program, diagnostics);
+    const auto notes = what_was_read(result.back(), diagram.program, tell_unused,
+                                     diagram.file.goal.wished ? diagram.file.goal.wished->text : std::string());
+    call.note(result.back().file(), {notes.begin() + read, notes.end()});
   }
   if (diagnostics.has_errors()) {
     throw InputError(diagnostics);

@@ -156,7 +156,7 @@ struct DiagnoseSettings {
 /// How records are read where no option says otherwise: keys and texts are those of the tool's options.
 struct RecordSettings {
   struct Setting {
-    std::string key{};  ///< time, rate, skip, range, rows, decimal, resample; of columns, the name in the diagram
+    std::string key{};  ///< time, … resample (hold, or Q=hold, again and again); of columns, the name in the diagram
     PlacedText value{};
   };
   std::vector<Setting> settings{};

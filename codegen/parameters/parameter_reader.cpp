@@ -305,7 +305,9 @@ class Reader : private Reading, private SettingsReader {
       if (!known_key(key, node, record_keys, "[record]")) {
         continue;
       }
-      if (key.str() != "columns") {
+      if (const auto* const ways = key.str() == "resample" ? node.as_table() : nullptr) {
+        read_ways(*ways);
+      } else if (key.str() != "columns") {
         take_setting(key, node, result_.record.settings);
       } else if (const auto* const columns = as_table(key, node)) {
         for (const auto& [name, column] : *columns) {
@@ -313,6 +315,34 @@ class Reader : private Reading, private SettingsReader {
         }
       }
     }
+  }
+
+  /// {Q = "hold", "*" = "linear"}: as the option repeated, Q=hold and linear, in the order of the file.
+  void read_ways(const toml::table& table) {
+    const std::size_t first = result_.record.settings.size();
+    for (const auto& [name, way] : table) {
+      const bool is_of_others = name.str() == "*";
+      if (!way.is_string()) {
+        wrong_type(name, way, "a text", fmt::format("{} = \"hold\"", is_of_others ? "\"*\"" : name.str()));
+      } else if (is_of_others || is_column(name.str())) {
+        const std::string text = *way.value<std::string>();
+        result_.record.settings.push_back(
+            {.key = "resample",
+             .value = {.text = is_of_others ? text : fmt::format("{}={}", name.str(), text), .place = at(way)}});
+      } else {
+        no_signal(name);
+      }
+    }
+    std::sort(result_.record.settings.begin() + static_cast<std::ptrdiff_t>(first), result_.record.settings.end(),
+              [](const auto& a, const auto& b) {
+                return std::tie(a.value.place.line, a.value.place.column) <
+                       std::tie(b.value.place.line, b.value.place.column);
+              });
+  }
+
+  void no_signal(const toml::key& key) {
+    diagnostics_.error(error::unknown_key, at(key), fmt::format("\"{}\" is no name of a signal.", key.str()),
+                       "use letters, digits and _, as in the diagram.");
   }
 
   void take_setting(const toml::key& key, const toml::node& node, std::vector<RecordSettings::Setting>& settings) {
@@ -325,8 +355,7 @@ class Reader : private Reading, private SettingsReader {
       settings.push_back(
           {.key = std::string(key.str()), .value = {.text = text ? *text : std::to_string(*whole), .place = at(node)}});
     } else {
-      diagnostics_.error(error::unknown_key, at(key), fmt::format("\"{}\" is no name of a signal.", key.str()),
-                         "use letters, digits and _, as in the diagram.");
+      no_signal(key);
     }
   }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -169,6 +170,12 @@ std::string toml_string(std::string_view text) {
   return result + "\"";
 }
 
+/// The name of a signal as a key: MAIN.u, Y[2] and * stand in quotes.
+std::string signal_key(const std::string& name) {
+  const auto is_bare = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  return std::ranges::all_of(name, is_bare) ? name : toml_string(name);
+}
+
 std::string list_of(const std::vector<PlacedText>& names) {
   std::string text;
   for (const PlacedText& name : names) {
@@ -193,18 +200,35 @@ void append_diagnose(const DiagnoseSettings& diagnose, std::vector<Entry>& entri
 }
 
 void append_record(const RecordSettings& record, std::vector<Entry>& entries) {
-  const auto add = [&](const std::string& table, const std::vector<RecordSettings::Setting>& settings) {
-    if (settings.empty()) {
-      return;
+  // hold, of all signals, is a setting; Q=hold, and hold of the others, are a table.
+  std::vector<RecordSettings::Setting> settings;
+  std::vector<RecordSettings::Setting> ways;
+  for (const RecordSettings::Setting& one : record.settings) {
+    const auto equals = one.value.text.rfind('=');
+    const bool of_one = equals != std::string::npos;
+    if (one.key == "resample") {
+      ways.push_back({.key = of_one ? one.value.text.substr(0, equals) : "*",
+                      .value = {.text = one.value.text.substr(of_one ? equals + 1 : 0)}});
+    } else {
+      settings.push_back(one);
     }
-    entries.push_back({.key = in_capitals(table), .text = "[" + table + "]", .remark = {}, .head = true});
-    for (const RecordSettings::Setting& one : settings) {
+  }
+  if (ways.size() == 1 && ways.front().key == "*") {
+    settings.push_back({.key = "resample", .value = ways.front().value});
+    ways.clear();
+  }
+  const auto add = [&](const std::string& table, const std::vector<RecordSettings::Setting>& of_table) {
+    if (!of_table.empty()) {
+      entries.push_back({.key = in_capitals(table), .text = "[" + table + "]", .remark = {}, .head = true});
+    }
+    for (const RecordSettings::Setting& one : of_table) {
       entries.push_back({.key = in_capitals(table + "." + one.key),
-                         .text = toml_key(one.key) + " = " + toml_string(one.value.text),
+                         .text = signal_key(one.key) + " = " + toml_string(one.value.text),
                          .remark = {}});
     }
   };
-  add("record", record.settings);
+  add("record", settings);
+  add("record.resample", ways);
   add("record.columns", record.columns);
 }
 

@@ -416,9 +416,9 @@ std::vector<Trace> traces_of(const Task& task, const std::vector<GapFinding>& ga
 }
 
 std::string summary_of(const Diagnosis& found, bool below_material) {
-  std::string gap =
-      fmt::format("{} {:.3g} → {:.3g} → {:.3g}{} RMS, floor {:.3g}", found.gap.signal, found.gap.nominal,
-                  found.gap.calibrated, found.gap.improved, unit_behind(found.gap), found.gap.floor.value);
+  std::string gap = fmt::format("{}: nominal {:.3g}, calibrated {:.3g}, improved {:.3g}{} RMS, floor {:.3g}",
+                                found.gap.signal, found.gap.nominal, found.gap.calibrated, found.gap.improved,
+                                unit_behind(found.gap), found.gap.floor.value);
   const std::vector<std::string> effects = named_once(found.effects);
   switch (found.verdict) {
     case Verdict::None:

@@ -22,6 +22,7 @@ article.effect .at { font-weight: 400; color: var(--soft); }
 tr.own td { font-weight: 600; }
 .tag { background: var(--after); color: var(--paper); font-size: .75rem; padding: 0 .45rem; border-radius: .6rem; }
 svg.share-bar { width: 110px; height: 11px; margin-right: .5rem; vertical-align: -1px; }
+@media (max-width: 700px) { svg.share-bar { width: 44px; } }
 rect.nominal { fill: var(--nominal); } rect.before { fill: var(--before); } rect.after { fill: var(--after); }
 rect.rest { fill: var(--grid); }
 svg.missing { width: 100%; max-width: 720px; display: block; }

@@ -48,7 +48,8 @@ std::string interval_of(const ParameterFinding& parameter) {
   if (!is_determined(parameter)) {
     return "not determined";
   }
-  return fmt::format("{} … {}", figure(parameter.low, 4), figure(parameter.high, 4));
+  const auto [low, high] = interval_ends(parameter.low, parameter.high);
+  return fmt::format("{} … {}", low, high);
 }
 
 std::string parameter_table(const EffectFinding& effect) {
@@ -76,7 +77,10 @@ std::string effect_card(const EffectFinding& effect, const Diagnosis& diagnosis)
       "<article class=\"effect\"><h3>{} <span class=\"at\">on {}</span></h3>\n<p><strong>{}</strong> of the gap "
       "that calibration leaves{}; {}.</p>\n",
       escaped(words_of(effect.id)), escaped(effect.edge), percent(effect.share),
-      effect.around_plant ? " at the outputs, in the loop around the plant" : "", inverse_of(effect.inverse));
+      effect.around_plant ? " at the outputs, in the loop around the plant. That is beside the 100 % which the "
+                            "other effects and what stays open make of what the plant lacks"
+                          : "",
+      inverse_of(effect.inverse));
   const auto list = [](const std::vector<std::string>& names) {
     return escaped(fmt::format("{}", fmt::join(names, ", ")));
   };
@@ -195,9 +199,10 @@ std::string controller_row(const ControllerFinding& controller) {
   return fmt::format("<tr><td>controller</td><td class=\"bar\"></td><td>{}</td></tr>\n", escaped(text));
 }
 
-std::string split_row(const char* part, double share, const char* css_class, const char* what) {
+std::string split_row(const char* part, double share, const std::string& percent, const char* css_class,
+                      const char* what) {
   return fmt::format("<tr><td>{}</td><td class=\"bar\">{} {}</td><td>{}</td></tr>\n", part, share_bar(share, css_class),
-                     percent(share), what);
+                     percent, what);
 }
 
 }  // namespace
@@ -245,10 +250,12 @@ std::string split_section(const Diagnosis& diagnosis) {
     html += controller_row(*diagnosis.controller);
   }
   if (!diagnosis.effects.empty()) {
-    html += split_row("inputs and outputs", diagnosis.split.input_output, "after",
+    const GapSplit& split = diagnosis.split;
+    const auto percents = percents_of_whole({split.input_output, split.plant, split.open});
+    html += split_row("inputs and outputs", split.input_output, percents[0], "after",
                       "delay, clock, quantum and glitches on the measured wires");
-    html += split_row("plant", diagnosis.split.plant, "after", "all other effects");
-    html += split_row("open", diagnosis.split.open, "before", "no effect closes it");
+    html += split_row("plant", split.plant, percents[1], "after", "all other effects");
+    html += split_row("open", split.open, percents[2], "before", "no effect closes it");
   }
   for (const CutFinding& cut : diagnosis.cuts) {
     html += fmt::format("<tr><td>{}</td><td class=\"bar\"></td><td>{}</td></tr>\n", escaped(cut.signal),

@@ -130,11 +130,15 @@ void clear_colours(std::string& text) {
   }
 }
 
-/// Old programs end lines by CR alone; a name in quotes may go over several lines, as in spreadsheets. Both keep the
-/// length of the text; a line end in a name becomes the vertical tab, which is a blank.
+/// Old programs end lines by CR alone, and Python on Windows by CR CR LF where newline='' was forgotten; a name in
+/// quotes may go over several lines, as in spreadsheets. Both keep the length of the text; a line end in a name becomes
+/// the vertical tab, which is a blank.
 void settle_line_ends(std::string& text) {
   if (text.find('\n') == std::string::npos) {
     std::ranges::replace(text, '\r', '\n');
+  }
+  for (std::size_t at = 0; (at = text.find("\r\r\n", at)) != std::string::npos; ++at) {
+    text[at] = ' ';
   }
   constexpr std::size_t most = 4000;  // names stand at the top
   for (std::size_t at = 0; at < std::min(most, text.size()); ++at) {

@@ -14,6 +14,7 @@
 #include "records/text/layout.hpp"
 #include "records/text/log_line.hpp"
 #include "records/text/long_table.hpp"
+#include "records/text/unit_column.hpp"
 #include "records/time/time_unit.hpp"
 #include "support/counted.hpp"
 #include "support/errors.hpp"
@@ -72,6 +73,7 @@ class Reader {
       table_.columns[i].has_values = seen_[i];
       tell_words(i);
     }
+    take_units_beside(table_);
     table_.stated = layout_.stated;
     table_.source = std::move(source_);
     return widened(std::move(table_));
@@ -143,6 +145,12 @@ class Reader {
         remarked_rows_ += is_row_in_remark(line) ? 1 : 0;
       }
     }
+    // What prints a line feed too many leaves an empty line behind each row.
+    if (row_ > 2 && blanks_ + 1 == row_) {
+      table_.notes.emplace_back("there is an empty line between all rows, which is left out");
+    } else {
+      diagnostics_.add_all(told_blanks_);
+    }
     if (remarked_rows_ > 0) {
       table_.notes.push_back(fmt::format("{} between the rows {} a remark, with as many numbers, and {} left out",
                                          counted(remarked_rows_, "line"), remarked_rows_ == 1 ? "is" : "are",
@@ -188,11 +196,15 @@ class Reader {
     }
     stray_.reset();
     if (blank_) {
-      diagnostics_.error(error::ragged_row, source_->place_of(*blank_), "There is a blank row between rows of numbers.",
-                         row_ < 2 ? std::string("remove the row, if no sample is missing there.")
-                                  : fmt::format("remove the row, if no sample is missing there; where a second table "
-                                                "begins, read the first alone: --rows 1..{}.",
-                                                row_));
+      ++blanks_;
+      if (told_blanks_.all().size() < most_errors) {
+        told_blanks_.error(error::ragged_row, source_->place_of(*blank_),
+                           "There is a blank row between rows of numbers.",
+                           row_ < 2 ? std::string("remove the row, if no sample is missing there.")
+                                    : fmt::format("remove the row, if no sample is missing there; where a second table "
+                                                  "begins, read the first alone: --rows 1..{}.",
+                                                  row_));
+      }
       blank_.reset();
     }
     if (cells_.size() != layout_.cells) {
@@ -292,7 +304,7 @@ class Reader {
         column.ambiguity = std::string(cell.text);
       }
     }
-    if (column.kind == CellKind::Text && names_signals(column.name)) {
+    if (column.kind == CellKind::Text && (names_signals(column.name) || names_units(column.name))) {
       take_word(column, cell.text);
     }
     if (!same) {
@@ -430,6 +442,8 @@ class Reader {
   std::size_t row_ = 0;     ///< of numbers, from 1 on, those that are left out among them
   std::vector<std::optional<std::pair<Line, Cell>>> first_cells_;  ///< by column: the cell that has told it
   std::optional<Line> blank_;
+  std::size_t blanks_ = 0;  ///< blank rows between rows of numbers
+  Diagnostics told_blanks_;
   std::string_view names_{};  ///< the row of names; empty where there is none
   std::size_t repeated_names_ = 0;
   std::size_t remarked_rows_ = 0;

@@ -134,7 +134,7 @@ bool settle_rows(Table& table, std::span<const double> seconds, const ReadOption
     const bool again = !kept.empty() && seconds[k] == seconds[kept.back()];
     if (again && same_numbers(table, kept.back(), k)) {
       ++twice;
-    } else if (again && options.resampling != Resampling::None) {
+    } else if (again && options.resamples()) {
       kept.back() = k;
       ++replaced;
     } else {

@@ -455,7 +455,7 @@ Times times_of(const Table& table, const ReadOptions& options) {
     };
     const bool one_each = table.columns.size() == 2 * found.size() && std::ranges::all_of(found, before_signal);
     if (!others.empty() && one_each) {
-      if (options.resampling == Resampling::None) {
+      if (!options.resamples()) {
         throw InputError(
             error::two_readings, table.columns[others.front()].place,
             fmt::format("Columns {} have different times: each signal has its own.",

@@ -23,21 +23,6 @@ double rounded(double value, int digits) {
   return value;
 }
 
-/// The number of fewest digits within `radius` of a sample time, as seconds or as rows per second.
-double plainest_near(double sample_time, double radius) {
-  for (int digits = 1; digits < 17; ++digits) {
-    const double seconds = rounded(sample_time, digits);
-    if (std::abs(seconds - sample_time) <= radius) {
-      return seconds;
-    }
-    const double from_rate = 1.0 / rounded(1.0 / sample_time, digits);
-    if (std::abs(from_rate - sample_time) <= radius) {
-      return from_rate;
-    }
-  }
-  return sample_time;
-}
-
 /// Least squares over t_k − t_0 = a + b·k: the slope b = Σ(k − k̄)(t_k − t_0) / Σ(k − k̄)².
 double slope(std::span<const double> time) {
   const auto count = static_cast<double>(time.size());
@@ -76,6 +61,20 @@ std::size_t farthest_row(std::span<const double> time, double sample_time, const
 }
 
 }  // namespace
+
+double plainest_near(double sample_time, double radius) {
+  for (int digits = 1; digits < 17; ++digits) {
+    const double seconds = rounded(sample_time, digits);
+    if (std::abs(seconds - sample_time) <= radius) {
+      return seconds;
+    }
+    const double from_rate = 1.0 / rounded(1.0 / sample_time, digits);
+    if (std::abs(from_rate - sample_time) <= radius) {
+      return from_rate;
+    }
+  }
+  return sample_time;
+}
 
 double median_step(std::span<const double> time) {
   return median(steps_of(time));

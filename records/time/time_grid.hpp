@@ -31,6 +31,9 @@ class PrintedResolution {
 /// s: the step in the middle of all, in size.
 [[nodiscard]] double median_step(std::span<const double> time);
 
+/// The number of fewest digits within `radius` of a sample time, as seconds or as rows per second.
+[[nodiscard]] double plainest_near(double sample_time, double radius);
+
 /// s: the least and the largest of t_k − t_0 − k·TS.
 struct Deviations {
   double low = 0.0;

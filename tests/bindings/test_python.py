@@ -131,6 +131,10 @@ class Runs(Folder):
         out = plant.run({"U": 1000.0 * u}, units={"U": "mV"})
         numpy.testing.assert_allclose(out["Y"], plant.run({"U": u})["Y"], rtol=1e-12)
         self.assertTrue(any("mV" in note for note in out.notes), out.notes)
+        fitted = hysteron.compile(PLANT, SETTINGS)
+        u = drive(2000)["U"]
+        tuned = fitted.tune({"U": 1000.0 * u, "Y": plant.run({"U": u})["Y"]}, units={"U": "mV"})
+        self.assertEqual(sum("converted to V" in note for note in tuned.notes), 1, tuned.notes)
         with self.assertRaises(hysteron.Error) as caught:
             plant.run({"U": u}, units={"U": "nm"})
         self.assertEqual(caught.exception.code, "HY729")
@@ -170,6 +174,11 @@ class Runs(Folder):
         self.assertEqual(caught.exception.code, "HY507")
         self.assertIn("resample", caught.exception.mend)
         self.assertLessEqual(len(plant.run(columns, resample="hold")["t"]), 200)
+        by_name = plant.run(columns, resample={"U": "hold", "*": "linear"})
+        self.assertEqual(bits(by_name["Y"]), bits(plant.run(columns, resample="hold")["Y"]))
+        with self.assertRaises(hysteron.Error) as caught:
+            plant.run(columns, resample={"Q": "hold"})
+        self.assertIn('resample={"', caught.exception.mend)
 
 
 def plant_steps(plant, values):

@@ -32,6 +32,15 @@ TEST(Axis, TicksAreRoundRiseAndLieWithin) {
   }
 }
 
+/// One number alone, as the 0 of -4.4 to 4.4 in steps of 5, shows no scale.
+TEST(Axis, ThereAreTwoTicksAtLeast) {
+  for (int most = 1; most < 7; ++most) {
+    for (double end = 1.0; end < 10.0; end += 0.1) {
+      EXPECT_GE(round_numbers({.low = -end, .high = end}, most).size(), 2U) << end << " " << most;
+    }
+  }
+}
+
 /// Seconds since 1970 with a span of a second: six digits would be the same at every tick.
 TEST(Axis, TicksFarFromZeroAreTold) {
   const Reach reach{.low = 1717408800.0, .high = 1717408801.0};

@@ -95,6 +95,18 @@ TEST_F(PageOfFigures, IsDrawnWithoutAFault) {
   expect_no_fault(shown(empty.text("nothing", "")));
 }
 
+/// A switch that stands until a gap is drawn until there.
+TEST_F(PageOfFigures, StepsHoldUntilAGap) {
+  FigurePage page;
+  const Figure figure{.panels = {{.curves = {{.x = {0.0, 1.0, 2.0, 2.5, 3.0, 4.0},
+                                              .y = {0.0, 1.0, 1.0, not_a_number, 0.0, 0.0},
+                                              .stroke = Stroke::Steps}}}}};
+  const Shown drawn = shown(page.text("steps", page.place(figure)), R"(
+    const path = document.querySelector("path.curve").getAttribute("d");
+    document.body.dataset.path = path.replace(/[-0-9. ]+/g, "");)");
+  EXPECT_THAT(drawn.page, HasSubstr("data-path=\"MHVHMH\""));
+}
+
 TEST_F(PageOfFigures, IsZoomedByDragsAndByKeys) {
   const Shown page = shown(rich_page(), R"(
     const host = document.getElementById("figure-0"), area = host.querySelector(".zoomed");

@@ -15,6 +15,7 @@
 namespace hysteron::records {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -224,6 +225,38 @@ TEST(LoggerDialect, FormatsOfOtherProgramsAreNamed) {
     EXPECT_THAT(refusal_of(bytes), HasSubstr(std::string(said)));
   }
   EXPECT_THAT(refusal_of("> plot,\nt,u\n0,1\n0.5,x\n"), Not(HasSubstr("Teleplot")));
+}
+
+/// Python on Windows without newline='' ends lines by CR CR LF; other programs print a line feed too many.
+TEST(LoggerDialect, AnEmptyLineBehindEachRowIsLeftOut) {
+  const Record twice = parse_record("log.csv", "t,u\r\r\n0,1\r\r\n1,2\r\r\n2,3\r\r\n3,4\r\r\n");
+  EXPECT_THAT(twice.column("u").values, ElementsAre(1.0, 2.0, 3.0, 4.0));
+  const Record spaced = parse_record("log.csv", "t,u\n\n0,1\n\n1,2\n\n2,3\n\n3,4\n\n");
+  EXPECT_THAT(spaced.column("u").values, ElementsAre(1.0, 2.0, 3.0, 4.0));
+  EXPECT_THAT(notes_of(spaced), HasSubstr("an empty line between all rows"));
+  EXPECT_THAT(refusal_of("t,u\n0,1\n1,2\n\n2,3\n3,4\n"), HasSubstr("There is a blank row"));
+}
+
+/// A unit may stand in a column of its own; so K is not a thousand times too small.
+TEST(LoggerDialect, AColumnOfUnitsIsTheUnitOfItsSignal) {
+  for (const std::string_view names : {"u,u_unit,y,y_unit", "u,U Unit,y,y units", "u,Unit,y,Unit", "u,Einheit,y,uom"}) {
+    const Record record = parse_record("log.csv", fmt::format("t,{}\n0,1,mV,2,um\n1,2,mV,4,um\n2,3,mV,6,um\n", names));
+    EXPECT_EQ(record.column("u").unit, "mV") << names;
+    EXPECT_EQ(record.column("y").unit, "um") << names;
+    EXPECT_THAT(notes_of(record), HasSubstr("column u is in mV, as column ")) << names;
+  }
+  EXPECT_THAT(refusal_of("t,u,u_unit\n0,1,mV\n1,2,V\n2,3,mV\n"), HasSubstr("says that u is in mV and in V"));
+  // A unit in the head goes before, and words that are no units are none.
+  EXPECT_EQ(parse_record("log.csv", "t,u [V],u_unit\n0,1,mV\n1,2,mV\n2,3,mV\n").column("u").unit, "V");
+  EXPECT_EQ(parse_record("log.csv", "t,u,u_unit\n0,1,mixer\n1,2,mixer\n2,3,mixer\n").column("u").unit, "");
+}
+
+/// The pipes at the edges of a table, and separators at the ends of rows, are no columns.
+TEST(LoggerDialect, AnEmptyColumnWithoutANameIsNone) {
+  const Record piped = parse_record("log.txt", "| t | u |\n|---|---|\n| 0 | 1 |\n| 1 | 2 |\n| 2 | 3 |\n");
+  EXPECT_THAT(piped.column("u").values, ElementsAre(1.0, 2.0, 3.0));
+  EXPECT_TRUE(piped.unreadable().empty());
+  EXPECT_TRUE(parse_record("log.csv", "t;u;\n0;1;\n1;2;\n2;3;\n").unreadable().empty());
 }
 
 }  // namespace

@@ -169,6 +169,23 @@ class Schemas(unittest.TestCase):
         self.printed("serve", "plant.st", "--config", "run.toml", "--virtual", "--engine", "interpreter", "--cycles", "1500")
         self.holds("history", self.printed("history", "history.sqlite", "--json"))
 
+    def test_retained(self):
+        (self.folder / "keeping.toml").write_text('[outputs.Y]\nsafe = 0.0\n[retain]\nfolder = "kept"\n')
+        self.printed("serve", "plant.st", "--config", "keeping.toml", "--virtual", "--engine", "interpreter", "--cycles", "100")
+        self.holds("retained", self.printed("retained", "kept", "--json"))
+
+    def test_compare(self):
+        (self.folder / "other.csv").write_text("t,U,Y,N\n0,0,0,1\n0.001,0.5,0.1,1\n0.0025,0.5,0.1,1\n0.0035,1,nan,1\n")
+        (self.folder / "other.toml").write_text("[parameters.AMP]\nK = 3.0\n")
+        (self.folder / "others.toml").write_text("[parameters.AMP]\nK = 4.0\n")
+        changed = PLANT.replace("@unit um", "@unit mm").replace("K := 2.0", "K := 3.0").replace("Y := LAG.XOUT", "Y := AMP.XOUT")
+        (self.folder / "changed.st").write_text(changed.replace("LAG : HY_LAG := (T1 := 0.01);", "LAG : HY_INTEGRAL;"))
+        for name, used in (("one", "lag"), ("two", "offset")):
+            self.printed("diagnose", "plant.st", "--log", "log.csv", "--params", "p.toml", "--out", name, "--effects", used)
+        self.holds("compare", *(self.printed("compare", *files, "--json", codes=(1,)) for files in (
+            ("log.csv", "other.csv"), ("other.toml", "others.toml"), ("plant.st", "changed.st"),
+            ("one/verdict.json", "two/verdict.json"))))
+
     def test_online_change(self):
         (self.folder / "online.toml").write_text('[task]\nscheduling = "other"\nlock_memory = false\n[outputs.Y]\nsafe = 0.0\n'
                                                  '[modbus]\nport = 0\n[online_change]\nsocket = "online-change.socket"\n')

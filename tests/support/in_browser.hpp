@@ -24,15 +24,14 @@ struct Shown {
   std::string log{};
 };
 
-inline Shown shown(std::string html, const std::string& script = {}) {
+inline Shown shown(std::string html, const std::string& script = {}, int width = 1280) {
   const ScratchFolder folder;
   html.insert(html.rfind("</body>"), "<script>" + script + "</script>");
   const std::string file = folder.write("page.html", html);
   const std::string command =
-      "timeout 120 chromium --headless --no-sandbox --disable-gpu --enable-logging=stderr --window-size=1280,1000 "
-      "--virtual-time-budget=5000 --user-data-dir=" +
-      folder.path().string() + "/profile --dump-dom file://" + file + " > " + (folder / "dom") + " 2> " +
-      (folder / "log");
+      "timeout 120 chromium --headless --no-sandbox --disable-gpu --enable-logging=stderr --window-size=" +
+      std::to_string(width) + ",1000 --virtual-time-budget=5000 --user-data-dir=" + folder.path().string() +
+      "/profile --dump-dom file://" + file + " > " + (folder / "dom") + " 2> " + (folder / "log");
   const int status = std::system(command.c_str());
   Shown result{contents_of(folder / "dom"), contents_of(folder / "log")};
   EXPECT_EQ(status, 0) << result.log;

@@ -42,6 +42,8 @@ TEST(OptionWords, NameAnOptionWithItsValueAsTheCallerWritesIt) {
            Case{"leave them out: --skip 3.", R"(leave them out: {"skip": 3}.)", "leave them out: skip=3."},
            Case{"read it with --resample hold.", R"(read it with {"resample": "hold"}.)",
                 R"(read it with resample="hold".)"},
+           Case{"of one signal, --resample Q=hold.", R"(of one signal, {"resample": {"Q": "hold"}}.)",
+                R"(of one signal, resample={"Q": "hold"}.)"},
            Case{"With --any-order this is", R"(With {"any_order": true} this is)", "With any_order=True this is"},
            Case{"give it as --log LOG.csv.", R"(give it as the argument records, "LOG.csv".)",
                 R"(give it as records="LOG.csv".)"},

@@ -54,6 +54,48 @@ TEST_F(CompareCommand, RowsAndColumnsThatOneAloneHasAreDifferences) {
   EXPECT_THAT(compare("a.csv late.csv", 2).err, AllOf(HasSubstr("HY730"), HasSubstr("no time in common")));
 }
 
+/// A column that is no signal in one of the records is not compared, and keeps no other from it.
+TEST_F(CompareCommand, AColumnWithoutNumbersIsNamed) {
+  bench.write("a.csv", "t,y,z\n0,1,5\n1,2,5\n2,3,5\n3,4,5\n");
+  bench.write("b.csv", "t,y,z\n0,1,5\n1,2,5\n2,nan,5\n3,4,5\n");
+  for (const std::string files : {"a.csv b.csv", "b.csv a.csv"}) {
+    const auto text = compare(files, 1).out;
+    EXPECT_THAT(text, AllOf(HasSubstr("z: equal bits"), HasSubstr("y: not compared; b.csv: "))) << files;
+    EXPECT_THAT(text, testing::Not(HasSubstr("y: only in"))) << files;
+  }
+}
+
+TEST_F(CompareCommand, ConvertedUnitsAreSaid) {
+  bench.write("a.csv", "t,y [um],z\n0,1,5\n1,2,5\n2,3,5\n");
+  bench.write("b.csv", "t,y [nm],z [V]\n0,1000,5\n1,2000,5\n2,3000,5\n");
+  EXPECT_THAT(compare("a.csv b.csv --abs 1e-9", 0).err,
+              HasSubstr("note: b.csv: column y is in nm, and was converted to um, as in a.csv: times 0.001\n"));
+  EXPECT_THAT(compare("b.csv a.csv --abs 1e-9", 0).err,
+              HasSubstr("note: a.csv: column z has no unit, and is taken to be in V, as in b.csv\n"));
+  bench.write("c.csv", "t,y [kg]\n0,1\n1,2\n2,3\n");
+  EXPECT_THAT(compare("a.csv c.csv", 2).err, HasSubstr("HY729"));
+}
+
+/// Records of the same uneven times row by row; of two clocks at the times of the slower one, and of those in A's grid.
+TEST_F(CompareCommand, UnevenTimesAndOtherClocks) {
+  bench.write("a.csv", "t,y\n0,0\n1,10\n2.2,22\n3,30\n4,40\n5,50\n6,60\n");
+  bench.write("b.csv", "t,y\n0,0\n1,10\n2.2,23\n3,30\n4,40\n5,50\n6,60\n");
+  EXPECT_THAT(
+      compare("a.csv b.csv", 1).out,
+      HasSubstr("y: largest difference 1 at t = 2.2 s, RMS 0.378; first different at t = 2.2 s, in 1 of 7 rows"));
+  bench.write("slow.csv", "t,y\n0.5,5\n2.5,25\n4.5,46\n");
+  EXPECT_THAT(compare("a.csv slow.csv", 2).err,
+              AllOf(HasSubstr("no time in common"), HasSubstr("--resample linear, or hold")));
+  for (const std::string files : {"a.csv slow.csv", "slow.csv a.csv"}) {
+    EXPECT_THAT(compare(files + " --resample linear", 1).out,
+                AllOf(HasSubstr("y: largest difference 1 at t = 4.5 s"), HasSubstr("in 1 of 3 rows")))
+        << files;
+  }
+  bench.write("shifted.csv", "t,y\n0,0\n1.5,15\n2.5,25\n4,40\n5.5,55\n6,60\n");
+  EXPECT_THAT(compare("a.csv shifted.csv", 1).out,
+              HasSubstr("; --resample linear compares at the times of the slower"));
+}
+
 TEST_F(CompareCommand, ParametersValueByValue) {
   bench.write("a.toml", "[parameters.A]\nK = 2.0\nN = 3\nOLD = 1.0\n[initial.S]\nX = 0.0\n");
   bench.write("b.toml", "# tuned\n[parameters.A]\nN = 3.0\nK = 2.5\nNEW = true\n[initial.S]\nX = 1.0\n");

@@ -63,6 +63,22 @@ TEST_F(PlotCommand, TwoRecordsAreDrawnTogetherInOneUnit) {
   EXPECT_FALSE(bench.has("both.svg"));
 }
 
+TEST_F(PlotCommand, AColumnWithoutNumbersIsLeftOutAndSaid) {
+  bench.write("a.csv", "t,y,z\n0,1,5\n1,2,5\n2,3,5\n");
+  bench.write("b.csv", "t,y,z\n0,1,5\n1,nan,5\n2,3,5\n");
+  const auto drawn = bench.shell("hysteron plot a.csv b.csv --out ab.svg");
+  EXPECT_EQ(drawn.code, 0) << drawn.err;
+  EXPECT_THAT(drawn.err, HasSubstr("note: b.csv: y is left out: "));
+  refuse("hysteron plot a.csv b.csv --signal y --out y.svg", "HY506");
+}
+
+TEST_F(PlotCommand, ConvertedUnitsAreSaid) {
+  bench.write("a.csv", "t,y [um]\n0,1\n1,2\n2,3\n");
+  bench.write("b.csv", "t,y [nm]\n0,1000\n1,2000\n2,3000\n");
+  EXPECT_THAT(bench.shell("hysteron plot a.csv b.csv --out ab.svg").err,
+              HasSubstr("note: b.csv: column y is in nm, and was converted to um, as in a.csv: times 0.001\n"));
+}
+
 TEST_F(PlotCommand, ParametersAreDrawnOverTheirFiles) {
   bench.write("a.toml", "[parameters.A]\nK = 1.0\nSAME = 4.0\n");
   bench.write("b.toml", "[parameters.A]\nK = 2.0\nSAME = 4.0\n");
@@ -82,12 +98,28 @@ TEST_F(PlotCommand, RefusesWhatItCannotDraw) {
   refuse("hysteron plot log.csv --out x.svg --xy u", "HY730", "--xy U,Y");
   refuse("hysteron plot log.csv --out x.svg --xy u,nothing", "HY502");
   refuse("hysteron plot nowhere.csv --out x.svg", "HY100");
-  bench.write("uneven log.csv", "t,u\n0,1\n1,2\n2,3\n3.4,4\n5,5\n6,6\n");
-  refuse("hysteron plot 'uneven log.csv' --out x.svg", "HY507", "`hysteron record 'uneven log.csv' --picture X.svg`");
+  bench.write("back.csv", "t,u\n0,1\n1,2\n2,3\n1.4,4\n5,5\n6,6\n");
+  refuse("hysteron plot back.csv --out x.svg", "HY508");
   refuse("RSVG_CONVERT=no-such hysteron plot log.csv --out x.png", "HY740", "librsvg2-bin");
   refuse("RSVG_CONVERT=false hysteron plot log.csv --out x.png", "HY741", ".html needs none");
   EXPECT_FALSE(bench.has("x.svg"));
   EXPECT_FALSE(bench.has("x.png"));
+}
+
+/// At the times of the record, with nothing over the rows that are missing.
+TEST_F(PlotCommand, UnevenTimesAreDrawnAsTheyAre) {
+  bench.write("uneven.csv", "t,u\n0,1\n1,2\n2,3\n3.3,4\n4,5\n9,6\n10,7\n11,8\n12,8.5\n");
+  const auto drawn = bench.shell("hysteron plot uneven.csv --out uneven.html");
+  EXPECT_EQ(drawn.code, 0) << drawn.err;
+  EXPECT_THAT(drawn.err,
+              HasSubstr("note: uneven.csv: its times are uneven, and are kept: most rows are 1 s apart, with "
+                        "a jitter of 0.16 s RMS and 1 gap\n"));
+  EXPECT_THAT(bench.read("uneven.html"),
+              AllOf(HasSubstr("[0,1,2,3.3,4,6.5,9,10,11,12]"), HasSubstr("[1,2,3,4,5,null,6,7,8,8.5]")));
+  ASSERT_EQ(bench.shell("hysteron plot uneven.csv --out part.html --range 1..10").code, 0);
+  EXPECT_THAT(bench.read("part.html"), HasSubstr("[1,2,3.3,4,6.5,9]"));
+  ASSERT_EQ(bench.shell("hysteron plot uneven.csv --out even.html --resample linear").code, 0);
+  EXPECT_THAT(bench.read("even.html"), HasSubstr("5,5.2,5.4,5.6,5.8,6,7,8"));
 }
 
 TEST_F(PlotCommand, ARunIsDrawnAgainstItsRecord) {

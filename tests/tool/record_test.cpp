@@ -207,5 +207,61 @@ TEST(RecordCommand, ResamplingDoesNotHideAWrongUnitOfTime) {
   EXPECT_EQ(bench.shell("hysteron run p.st --in log.csv --out out.csv --time 't[ms]'").code, 0);
 }
 
+/// An encoder is held, an analog signal lies on lines: said once in the parameter file, or by options.
+TEST(RecordCommand, SignalsOfOneRecordAreResampledEachInItsWay) {
+  const test::Workbench bench;
+  bench.write("p.st", R"(FUNCTION_BLOCK PLANT  (* @ts 1ms *)
+  VAR_INPUT
+    U : LREAL;
+    Q : LREAL;
+    N : DINT;
+  END_VAR
+  VAR_OUTPUT
+    Y : LREAL;
+  END_VAR
+  VAR
+    AMP : HY_GAIN := (K := 2.0);
+  END_VAR
+  AMP(XIN := U + 0.0 * Q + DINT_TO_LREAL(0 * N));
+  Y := AMP.XOUT;
+END_FUNCTION_BLOCK
+)");
+  std::string log = "t,U,Q,N,Y\n";
+  for (int k = 0; k < 300; ++k) {
+    log += fmt::format("{:.6f},{:.4f},{},{},{:.4f}\n", 1e-3 * k + (k % 3 == 1 ? 2e-4 : 0.0), std::sin(0.05 * k), k / 4,
+                       k / 9, 2.2 * std::sin(0.05 * k));
+  }
+  bench.write("log.csv", log);
+  const std::string ways = "[record]\nresample = {Q = \"hold\", U = \"linear\", \"*\" = \"average\"}\n";
+  bench.write("p.toml", "[fit.AMP]\nK = {}\n\n" + ways);
+  bench.write("plain.toml", "[fit.AMP]\nK = {}\n");
+  for (const auto& [files, options] : {std::pair<std::string, std::string>{"p.toml", ""},
+                                       {"plain.toml", " --resample average --resample Q=hold --resample U=linear"}}) {
+    for (const std::string command :
+         {"run p.st --in log.csv --out out.csv --params ", "tune p.st --log log.csv --out tuned.toml --params ",
+          "record log.csv --for p.st --params ", "plot log.csv --out log.svg --params ",
+          "compare log.csv log.csv --params ", "diagnose p.st --log log.csv --out d --params "}) {
+      const auto outcome = bench.shell("hysteron " + command + files + options);
+      const std::string said = outcome.out + outcome.err;
+      EXPECT_EQ(outcome.code, 0) << command << said;
+      EXPECT_THAT(said, HasSubstr("U: linear; 0 rows made up in gaps; a row lies up to ")) << command;
+      EXPECT_THAT(said, HasSubstr("Q: hold; 0 rows made up in gaps; a row lies up to ")) << command;
+    }
+  }
+  EXPECT_THAT(bench.read("tuned.toml"), Not(HasSubstr("record")));
+  // N is DINT: for the diagram it is held, and a line is refused.
+  EXPECT_THAT(bench.shell("hysteron run p.st --in log.csv --params p.toml --out out.csv").err,
+              HasSubstr("N: hold, as nothing lies between two values"));
+  const auto line = bench.shell("hysteron run p.st --in log.csv --resample linear --resample N=linear --out out.csv");
+  EXPECT_EQ(line.code, 2);
+  EXPECT_THAT(line.err, HasSubstr("mend: hold the last one: --resample N=hold."));
+  // An option goes before the file; what was slipped in the file is told at its place.
+  EXPECT_THAT(bench.shell("hysteron record log.csv --params p.toml --resample Q=linear").out,
+              HasSubstr("U, Q: linear"));
+  bench.write("bad.toml", "[record]\nresample = {Q = \"hodl\"}\n");
+  EXPECT_THAT(bench.shell("hysteron record log.csv --params bad.toml").err,
+              HasSubstr("bad.toml:2:17: resample = \"Q=hodl\" in [record] cannot be read."));
+}
+
 }  // namespace
 }  // namespace hysteron

@@ -156,6 +156,20 @@ TEST_F(UserTests, GoldenRecords) {
   EXPECT_THAT(run(toml).out, HasSubstr("has 2 rows, the case 3 steps"));
 }
 
+/// A record that drives a case, and one that its outputs are held against, are in the units of the diagram.
+TEST_F(UserTests, RecordsAreBroughtToTheUnitsOfTheDiagram) {
+  bench.write("log.csv", "t,X [mV]\n0,1000\n0.001,1000\n0.002,1000\n");
+  bench.write("gold.csv", "t,Y [mV*s],BUSY\n0,2,1\n0.001,4,1\n0.002,6,1\n");
+  const std::string toml = "[[case]]\nname = \"n\"\ncsv = \"log.csv\"\ngolden = \"gold.csv\"\nabs = 1e-12\n";
+  const auto outcome = run(toml);
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("note: log.csv: column X is in mV, and was converted to V: times 0.001\n"),
+                    HasSubstr("note: gold.csv: column Y is in mV*s, and was converted to V*s: times 0.001\n")));
+  bench.write("gold.csv", "t,Y [kg],BUSY\n0,2,1\n0.001,4,1\n0.002,6,1\n");
+  EXPECT_THAT(refusal(toml), HasSubstr("HY729"));
+}
+
 /// What cases are made from is never written over: neither by golden records nor by the results.
 TEST_F(UserTests, NothingIsWrittenOverWhatCasesAreMadeFrom) {
   const std::string log = "t,X\n0,1\n0.001,1\n0.002,1\n";

@@ -113,7 +113,20 @@ TEST(TuneGoal, FollowsARecord) {
   ASSERT_EQ(done.code, 0) << done.err;
   const auto json = nlohmann::json::parse(done.out.substr(done.out.find('{')));
   EXPECT_NEAR(json["parameters"][0]["value"].get<double>(), 7.0, 1e-3);
+  EXPECT_THAT(done.err, Not(HasSubstr("not used")));
   EXPECT_THAT(bench.shell(tune_loop).err, HasSubstr("HY530 error: p.toml:3"));
+  // The wish has a unit as all columns have: in thousandths it is the same one.
+  ASSERT_EQ(
+      bench
+          .shell("awk -F, 'NR == 1 { print \"t,SP,WISH [um]\"; next } { print $1 \",\" $2 \",\" 1000 * $3 }' log.csv "
+                 "> um.csv")
+          .code,
+      0);
+  const auto in_um = bench.shell("hysteron tune loop.st --params p.toml --out um.toml --log um.csv --json");
+  ASSERT_EQ(in_um.code, 0) << in_um.err;
+  EXPECT_THAT(in_um.err, HasSubstr("note: um.csv: column WISH is in um, and was converted to mm: times 0.001\n"));
+  const auto again = nlohmann::json::parse(in_um.out.substr(in_um.out.find('{')));
+  EXPECT_NEAR(again["parameters"][0]["value"].get<double>(), 7.0, 1e-3);
 }
 
 TEST(TuneGoal, RefusesWhatTheDiagramDoesNotHave) {
@@ -184,10 +197,12 @@ TEST(Relay, WritesWhereAPidMayBegin) {
   EXPECT_NEAR(json["model"]["K"].get<double>(), 2.0, 0.06);
   EXPECT_NEAR(json["model"]["T"].get<double>(), 0.6, 0.03);
   EXPECT_NEAR(json["model"]["dead_time"].get<double>(), 0.085, 0.01);
-  EXPECT_THAT(bench.read("start.toml"),
-              AllOf(HasSubstr("[parameters.PID]\nKP = "), HasSubstr("[fit.PID]\nKP = {min = ")));
+  EXPECT_THAT(bench.read("start.toml"), AllOf(HasSubstr("[parameters.PID]\nKP = "), HasSubstr("  # V/mm\n"),
+                                              HasSubstr("[fit.PID]\nKP = {min = ")));
   EXPECT_THAT(bench.shell("hysteron relay relay.csv --u U --y Y").out,
-              AllOf(HasSubstr("-0.3 to 1.2 V"), HasSubstr("start       PI ")));
+              AllOf(HasSubstr("-0.3 to 1.2 V"), HasSubstr(" V/mm, period Tu"), HasSubstr("start       PI ")));
+  EXPECT_THAT(bench.shell("hysteron relay relay.csv --u U --y Y --resample linear").err,
+              HasSubstr("note: relay.csv: resampled (linear)"));
   EXPECT_EQ(bench.shell("hysteron relay relay.csv --u U --y Z").code, 2);
   const auto bad = bench.shell("hysteron relay relay.csv --u Y --y U --out none.toml");
   EXPECT_THAT(bad.err, HasSubstr("HY535 error: relay.csv"));

@@ -313,6 +313,9 @@ class LivePage(unittest.TestCase):
         browser = self.enterContext(Browser(f"http://127.0.0.1:{port}/", width=420, height=900))
         browser.wait_for(LIVE)
         self.assertLessEqual(browser.evaluate("document.documentElement.scrollWidth"), 420)
+        cut = "[...document.querySelectorAll('.scroll')].filter(one => one.scrollWidth > one.clientWidth + 2)"
+        self.assertGreater(browser.evaluate(cut + ".length"), 0)
+        self.assertTrue(browser.evaluate(cut + ".every(one => getComputedStyle(one).backgroundImage !== 'none')"))
 
     def test_the_last_hours_of_a_point_are_drawn(self):
         history = RUN_FILE + '[history]\nfile = "history.sqlite"\nevery = "10ms"\npoints = ["Y", "LAG.T1"]\n'

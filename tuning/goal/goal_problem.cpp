@@ -15,6 +15,7 @@
 #include "codegen/parameters/elements.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
+#include "tuning/record_units.hpp"
 #include "tuning/signal_names.hpp"
 
 namespace hysteron {
@@ -266,8 +267,14 @@ class GoalBuilder {
                          fmt::format("say which column holds it, as --column {}=NAME.", input.name));
     }
     if (goal_.wished) {
-      if (const records::Column* const column = record.find(goal_.wished->text)) {
-        problem_.wished = column->values;
+      if (record.find(goal_.wished->text) != nullptr) {
+        records::Record converted = record;
+        convert_unit(converted, goal_.wished->text, program_.graph.outputs[problem_.output], program_.graph,
+                     problem_.found);
+        diagnostics_.add_all(problem_.found);
+        problem_.wished = converted.column(goal_.wished->text).values;
+        problem_.notes.assign(converted.notes().begin() + static_cast<std::ptrdiff_t>(record.notes().size()),
+                              converted.notes().end());
       } else {
         diagnostics_.error(error::missing_column, goal_.wished->place,
                            fmt::format("{} has no column {}.", record.file(), goal_.wished->text),

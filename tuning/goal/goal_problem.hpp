@@ -63,6 +63,8 @@ struct GoalProblem {
   std::optional<WishedResponse> model{};    ///< none: the wish is a column
   Signal wished{};                          ///< over all steps
   std::vector<GoalLimit> limits{};          ///< in the order of limit_texts
+  std::vector<std::string> notes{};         ///< what was done to the wished column, without capital and point
+  Diagnostics found{};                      ///< warnings about it
 
   [[nodiscard]] const Graph& graph() const { return plants.front().program.graph; }
   /// " with heavy.toml"; nothing of the only plant.

@@ -9,7 +9,7 @@ from typing import Any, Optional
 import numpy
 
 from ._library import Handle, Progress, library
-from ._messages import called, encoded, error, options
+from ._messages import called, encoded, error, notes_of, options
 from ._record import Record, as_record
 from ._results import relay_of, tuned_of, verdict_of
 
@@ -147,7 +147,9 @@ class Diagram:
         given = as_record(record, self, **reading)
         pointer, messages = called("run", self._pointer, given._handle.pointer,
                                    options(traces=list(traces), float32=float32), told=self.warnings)
-        return Record(pointer, messages)
+        made = Record(pointer, messages)
+        made.notes = _read_here([record], [given]) + made.notes
+        return made
 
     def tune(self, records=(), params=None, *, starts=1, progress=None, **reading):
         """Fits what [fit] of the parameter file names, so that the outputs meet the columns of their names; gives a Fit.
@@ -171,9 +173,9 @@ class Diagram:
                 raised.append(reason)
                 return 1
 
-        pointer, _ = called("tune", diagram._pointer, pointers, len(given), options(starts=starts), Progress(told), None,
-                            told=self.warnings)
-        fit = tuned_of(pointer)
+        pointer, messages = called("tune", diagram._pointer, pointers, len(given), options(starts=starts),
+                                   Progress(told), None, told=self.warnings)
+        fit = tuned_of(pointer, _read_here(_listed(records), given) + notes_of(messages))
         if raised:
             raise raised[0]
         return fit
@@ -182,19 +184,27 @@ class Diagram:
                  effort=None, time_limit=None, seed=None, explain=None, without=None, threads=None, **reading):
         """Why records of the machine and the diagram differ; gives the verdict. Options are those of the tool."""
         diagram, given, pointers = self._given(records, params, reading)
-        pointer, _ = called("diagnose", diagram._pointer, pointers, len(given),
-                            options(material=material, effects=effects, ignore=ignore, most=most, limits=limits,
-                                    effort=effort, time_limit=time_limit, seed=seed, explain=explain, without=without,
-                                    threads=threads),
-                            told=self.warnings)
-        return verdict_of(pointer)
+        pointer, messages = called("diagnose", diagram._pointer, pointers, len(given),
+                                   options(material=material, effects=effects, ignore=ignore, most=most, limits=limits,
+                                           effort=effort, time_limit=time_limit, seed=seed, explain=explain,
+                                           without=without, threads=threads),
+                                   told=self.warnings)
+        return verdict_of(pointer, _read_here(_listed(records), given) + notes_of(messages))
 
     def _given(self, records, params, reading):
         """The diagram with these parameters, the records, which own their handles, and these handles."""
         diagram = self if params is None else self.with_parameters(params)
-        many = isinstance(records, (list, tuple))
-        given = [as_record(one, diagram, **reading) for one in (records if many else [records])]
+        given = [as_record(one, diagram, **reading) for one in _listed(records)]
         return diagram, given, (ctypes.c_void_p * len(given))(*[one._handle.pointer for one in given])
+
+
+def _listed(records):
+    return records if isinstance(records, (list, tuple)) else [records]
+
+
+def _read_here(asked, given):
+    """Notes of the records that a call has read or made itself; of another, its owner has them."""
+    return [note for one, record in zip(asked, given) if record is not one for note in record.notes]
 
 
 def _is_text(given):
@@ -230,5 +240,6 @@ def relay(record, u, y, *, controller=None, **reading):
     the PID's instance in the diagram, for the parameter file that the result has as `text`.
     """
     given = as_record(record, None, **reading)
-    pointer, _ = called("relay_experiment", given._handle.pointer, encoded(u), encoded(y), options(controller=controller))
-    return relay_of(pointer)
+    pointer, messages = called("relay_experiment", given._handle.pointer, encoded(u), encoded(y),
+                               options(controller=controller))
+    return relay_of(pointer, _read_here([record], [given]) + notes_of(messages))

@@ -87,6 +87,10 @@ def called(name, *arguments, told=None):
     return result, messages
 
 
+def notes_of(messages):
+    return [one.message for one in messages if one.severity == "note"]
+
+
 def options(**given):
     """Options as the library takes them: those that are None are left out."""
     return json.dumps({key: value for key, value in given.items() if value is not None}).encode()

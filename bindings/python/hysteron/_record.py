@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy
 
 from ._library import Handle, library
-from ._messages import called, error, options
+from ._messages import called, error, notes_of, options
 
 
 def _read_only(pointer, count, owner):
@@ -28,7 +28,7 @@ class Record(Mapping):
         rows = library.hysteron_record_rows(pointer)
         self.sample_time = library.hysteron_record_sample_time(pointer)
         #: What was understood of the file that it does not say outright.
-        self.notes = [one.message for one in messages if one.severity == "note"]
+        self.notes = notes_of(messages)
         self.units = {}
         self._columns = {"t": _read_only(library.hysteron_record_time(pointer), rows, self._handle)}
         self.units["t"] = "s"
@@ -65,7 +65,8 @@ def read_record(path, *, diagram=None, columns=None, **given):
     """Reads a file as `hysteron record` does, in whatever dress a tool wrote it.
 
     Options are those of the tool, as texts or numbers: time="NAME[ms]", rate="1kHz", columns={"U": "MAIN.u[mV]"},
-    skip=3, range="2s..8s", rows="1..600", decimal="comma", resample="linear". With a diagram, [record] of its parameter
+    skip=3, range="2s..8s", rows="1..600", decimal="comma", resample="linear", or by signal
+    resample={"Q": "hold", "*": "linear"}, where * is all others. With a diagram, [record] of its parameter
     file holds where no option does, and a record is resampled to its sample time.
     """
     pointer, messages = called("record_read", os.fsencode(path), diagram._pointer if diagram else None,

@@ -52,6 +52,8 @@ class Fit:
     warnings: list
     text: str
     data: dict = field(repr=False)
+    #: What was understood of the records, and converted.
+    notes: list = field(default_factory=list, repr=False)
 
     @property
     def converged(self):
@@ -129,6 +131,8 @@ class TunedLoop:
     limits: list
     text: str
     data: dict = field(repr=False)
+    #: What was understood of the records, and converted.
+    notes: list = field(default_factory=list, repr=False)
 
     @property
     def keeps_limits(self):
@@ -141,24 +145,25 @@ def _figures(data):
                                        ("gain_margin_db", "phase_margin_deg", "sensitivity")})
 
 
-def _loop(data, text):
+def _loop(data, text, notes):
     plants = {one["name"]: Plant(one["name"], one["before"] and _figures(one["before"]), _figures(one["after"]))
               for one in data["plants"]}
     return _made(TunedLoop, data, parameters={one["name"]: _made(Tuned, one) for one in data["parameters"]},
-                 plants=plants, limits=[_made(Limit, one) for one in data["limits"]], text=text, data=data)
+                 plants=plants, limits=[_made(Limit, one) for one in data["limits"]], text=text, data=data,
+                 notes=notes)
 
 
-def tuned_of(pointer):
+def tuned_of(pointer, notes):
     """A fit, or a loop that was tuned for a goal: each has keys that the other has not."""
     handle = Handle(pointer, "fit_free")
     data = json.loads(library.hysteron_fit_json(handle.pointer))
     if "plants" in data:
-        return _loop(data, library.hysteron_fit_parameters(handle.pointer).decode())
+        return _loop(data, library.hysteron_fit_parameters(handle.pointer).decode(), notes)
     return _made(Fit, data,
                  parameters={one["name"]: _made(Fitted, one) for one in data["parameters"]},
                  initial_states={one["name"]: _made(Fitted, one) for one in data["initial_states"]},
                  outputs={one["name"]: _made(Score, one) for one in data["outputs"]},
-                 text=library.hysteron_fit_parameters(handle.pointer).decode(), data=data)
+                 text=library.hysteron_fit_parameters(handle.pointer).decode(), data=data, notes=notes)
 
 
 @dataclass(frozen=True)
@@ -203,14 +208,16 @@ class Relay:
     pid: Controller
     text: str
     data: dict = field(repr=False)
+    #: What was understood of the records, and converted.
+    notes: list = field(default_factory=list, repr=False)
 
 
-def relay_of(pointer):
+def relay_of(pointer, notes):
     handle = Handle(pointer, "relay_free")
     data = json.loads(library.hysteron_relay_json(handle.pointer))
     return _made(Relay, data, model=data["model"] and _made(Model, data["model"]), pi=_made(Controller, data["pi"]),
                  pid=_made(Controller, data["pid"]), text=library.hysteron_relay_parameters(handle.pointer).decode(),
-                 data=data)
+                 data=data, notes=notes)
 
 
 @dataclass(frozen=True)
@@ -307,6 +314,8 @@ class Verdict:
     warnings: list
     files: dict = field(repr=False)
     data: dict = field(repr=False)
+    #: What was understood of the records, and converted.
+    notes: list = field(default_factory=list, repr=False)
 
     @property
     def improved(self):
@@ -323,7 +332,7 @@ def _named(kind, data):
     return {name: _made(kind, one) for name, one in data.items()}
 
 
-def verdict_of(pointer):
+def verdict_of(pointer, notes):
     handle = Handle(pointer, "diagnosis_free")
     names = [library.hysteron_diagnosis_file_name(handle.pointer, i)
              for i in range(library.hysteron_diagnosis_file_count(handle.pointer))]
@@ -334,4 +343,4 @@ def verdict_of(pointer):
     return _made(Verdict, data, effects=effects, rivals=[_made(Rival, one) for one in data["rival_details"]],
                  families=[_made(Family, one) for one in data["families"]], gap=_made(Gap, data["gap"]),
                  gaps=[_made(Gap, one) for one in data["gaps"]], calibration=_named(Estimate, data["calibration"]),
-                 nominal=_named(Estimate, data["nominal"]), files=files, data=data)
+                 nominal=_named(Estimate, data["nominal"]), files=files, data=data, notes=notes)

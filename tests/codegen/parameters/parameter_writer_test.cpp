@@ -222,5 +222,18 @@ TEST(ParameterWriter, HowRecordsAreReadStaysInTheFile) {
   EXPECT_EQ(parameter_text(again), written);
 }
 
+TEST(ParameterWriter, WaysOfResamplingStayInTheFile) {
+  const auto again = [](const std::string& text) { return parameter_text(parse_parameter_file("p.toml", text)); };
+  const std::string of_all = "[record]\nrate = \"1 kHz\"\nresample = \"hold\"\n";
+  EXPECT_EQ(again(of_all), of_all);
+  const std::string table = "[record.resample]\nQ = \"hold\"\n\"MAIN.u\" = \"linear\"\n\"*\" = \"average\"\n";
+  EXPECT_EQ(again(table), table);
+  EXPECT_EQ(again("[record]\nresample = {Q = \"hold\", \"MAIN.u\" = \"linear\", \"*\" = \"average\"}\n"), table);
+  const ParameterFile file = parse_parameter_file("p.toml", table);
+  ASSERT_EQ(file.record.settings.size(), 3U);
+  EXPECT_EQ(file.record.settings[0].value.text, "Q=hold");
+  EXPECT_EQ(file.record.settings[2].value.text, "average");
+}
+
 }  // namespace
 }  // namespace hysteron::parameters

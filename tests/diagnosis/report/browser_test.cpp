@@ -79,6 +79,21 @@ TEST_F(ReportInBrowser, SharesDoNotReachIntoBoxes) {
   EXPECT_THAT(tried.page, HasSubstr("data-overlaps=\"0\""));
 }
 
+/// On a narrow screen the page does not slide sideways; a table that is wider than it does, and its edge shows that.
+TEST_F(ReportInBrowser, WhatIsCutOnANarrowScreenHasASign) {
+  Diagnosis found = fixture::rich_diagnosis();
+  found.effects.front().parameters.front().name = std::string(70, 'W');
+  const Shown narrow = shown(report_page(found, fixture::rich_program()), R"(
+    const cut = [...document.querySelectorAll("table, .scroll")].filter(one => one.scrollWidth > one.clientWidth + 2);
+    document.body.dataset.cut = cut.length > 0;
+    document.body.dataset.unsigned = cut.filter(one => getComputedStyle(one).backgroundImage === "none").length;
+    document.body.dataset.slides = document.documentElement.scrollWidth > innerWidth;)",
+                             500);
+  EXPECT_THAT(narrow.page, HasSubstr("data-cut=\"true\""));
+  EXPECT_THAT(narrow.page, HasSubstr("data-unsigned=\"0\""));
+  EXPECT_THAT(narrow.page, HasSubstr("data-slides=\"false\""));
+}
+
 TEST_F(ReportInBrowser, EmptyAndRefusedPagesRunWithoutAFault) {
   expect_no_fault(shown(report_page({}, {})));
   expect_no_fault(shown(report_page(fixture::refused_diagnosis(), fixture::rich_program())));

@@ -4,7 +4,6 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
-#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <limits>
@@ -73,14 +72,7 @@ void Database::Closed::operator()(sqlite3* file) const {
 }
 
 std::string way_out(const DatabaseError& problem) {
-  std::string way = mend_of_machine(problem.reason());
-  if (way.empty() && problem.reason() == EACCES) {
-    way = "give this user the right to write there";
-  } else if (way.empty()) {
-    way = problem.trouble() == Trouble::Held ? "end the program that has it" : "clear what is in the way there";
-  }
-  way.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(way.front())));
-  return way;
+  return problem.trouble() == Trouble::Held ? "End the program that has it" : hysteron::way_out(problem.reason());
 }
 
 std::string put_aside(const std::filesystem::path& path) {

@@ -39,7 +39,7 @@ class DatabaseError : public std::runtime_error {
   int reason_;
 };
 
-/// What somebody who reads of it can do, begun with a capital and without an end: "Make room on the disk".
+/// As way_out(reason) of support, and of a file that another program has.
 [[nodiscard]] std::string way_out(const DatabaseError& problem);
 
 class Statement;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <set>
@@ -37,6 +38,17 @@ std::string mend_of_machine(int reason) {
                                       "an error, and dmesg names "
                                       "it"
                                     : "";
+}
+
+std::string way_out(int reason) {
+  std::string way = mend_of_machine(reason);
+  if (way.empty()) {
+    way = reason == ENOENT                      ? "make the folder that is missing"
+          : reason == EACCES || reason == EPERM ? "give this user the right to write there"
+                                                : "clear what is in the way there";
+  }
+  way.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(way.front())));
+  return way;
 }
 
 namespace {

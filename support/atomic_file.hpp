@@ -25,6 +25,10 @@ namespace hysteron {
 /// end: "make room on the disk". Empty where the name or its rights are the reason.
 [[nodiscard]] std::string mend_of_machine(int reason);
 
+/// For a line of a program that runs on: what somebody can do who reads that a write failed for this reason, begun with
+/// a capital and without an end.
+[[nodiscard]] std::string way_out(int reason);
+
 /// HY700 for a trouble of the disk: what passes without an edit.
 class DiskTroubleError : public InputError {
  public:

@@ -84,19 +84,17 @@ void WriteNotices::look() {
   if (const std::string problem = retainer_ == nullptr ? "" : retainer_->problem(); problem.empty() == told_retain_) {
     told_retain_ = !told_retain_;
     tell("Retain",
-         told_retain_ ? fmt::format("the newest state on the disk stays {}: {}. Clear what is in the way there; each "
-                                    "further state is tried again.",
-                                    retainer_->written(), problem)
+         told_retain_ ? fmt::format("the newest state on the disk stays {}: {}. {}; each further state is tried again.",
+                                    retainer_->written(), problem, retainer_->mend())
                       : fmt::format("written again, state {}.", retainer_->written()),
          told_retain_ ? Weight::warning : Weight::notice);
   }
   if (trace_ != nullptr && trace_->is_cut() != told_trace_) {
     told_trace_ = !told_trace_;
     tell("Trace",
-         told_trace_ ? fmt::format("ends here: {}. Clear what is in the way there; another file is tried every "
-                                   "10 s.",
-                                   trace_->problem())
-                     : fmt::format("written again, into another file; {} steps are in none.", trace_->dropped()),
+         told_trace_
+             ? fmt::format("ends here: {}. {}; another file is tried every 10 s.", trace_->problem(), trace_->mend())
+             : fmt::format("written again, into another file; {} steps are in none.", trace_->dropped()),
          told_trace_ ? Weight::warning : Weight::notice);
   }
 }

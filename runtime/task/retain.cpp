@@ -273,6 +273,11 @@ std::string Retainer::problem() const {
   return problem_;
 }
 
+std::string Retainer::mend() const {
+  const std::scoped_lock lock(mutex_);
+  return mend_;
+}
+
 void Retainer::offer(const StepProgram& program, std::uint64_t commits, std::span<const double> inputs) noexcept {
   Latest<RetainedValues>& newest = image_.load(std::memory_order_relaxed)->newest_;
   RetainedValues& values = newest.filling();
@@ -319,6 +324,7 @@ void Retainer::write_newest() {
   const std::scoped_lock lock(mutex_);
   is_failing_.store(!problem.empty(), std::memory_order_relaxed);
   problem_ = std::move(problem);
+  mend_ = files_->mend();
 }
 
 }  // namespace hysteron::runtime

@@ -67,6 +67,8 @@ class RetainFiles {
   virtual std::string put_aside(std::size_t slot) = 0;
   /// A copy of it there, the slot left as it is. Empty, or why it failed.
   virtual std::string copy_aside(std::size_t slot) = 0;
+  /// What mends the last write that failed, as way_out() says it.
+  [[nodiscard]] virtual std::string mend() const { return "Clear what is in the way there"; }
   /// What became of the files beside that, to be told once; mostly empty.
   [[nodiscard]] virtual std::string take_remark() { return {}; }
 };
@@ -88,6 +90,7 @@ class RetainFolder final : public RetainFiles {
   std::string write(std::size_t slot, std::span<const std::byte> bytes) override;
   std::string put_aside(std::size_t slot) override;
   std::string copy_aside(std::size_t slot) override;
+  [[nodiscard]] std::string mend() const override;
   [[nodiscard]] std::string take_remark() override { return std::exchange(remark_, {}); }
   [[nodiscard]] std::filesystem::path path_of(std::size_t slot) const;
 
@@ -95,10 +98,12 @@ class RetainFolder final : public RetainFiles {
   /// Whether the folder of that name is another one than was held, or is gone.
   [[nodiscard]] bool is_taken_away() const;
   std::string write_slot(std::size_t slot, std::span<const std::byte> bytes);
+  std::string problem(const std::filesystem::path& path);
 
   std::filesystem::path folder_;
   Descriptor held_{};
   bool was_taken_away_ = false;
+  int reason_ = 0;  ///< of the last problem
   std::string remark_{};
 };
 
@@ -199,6 +204,8 @@ class Retainer {
   [[nodiscard]] bool is_failing() const noexcept { return is_failing_.load(std::memory_order_relaxed); }
   /// Why the newest state is not on the disk; empty where it is, or none was offered. From any thread.
   [[nodiscard]] std::string problem() const;
+  /// What somebody can do who reads of it.
+  [[nodiscard]] std::string mend() const;
   /// What is to be told of the files beside that.
   [[nodiscard]] Remarks& remarks() noexcept { return remarks_; }
   /// Writes what was offered last, and ends.
@@ -222,6 +229,7 @@ class Retainer {
   std::atomic<std::uint64_t> saved_commits_{0};
   mutable std::mutex mutex_;  ///< never taken by the cyclic thread
   std::string problem_{};
+  std::string mend_{};
   Remarks remarks_{};
   std::atomic<bool> stop_{false};
   std::thread writer_;

@@ -23,10 +23,6 @@
 namespace hysteron::runtime {
 namespace {
 
-std::string problem(const std::filesystem::path& path) {
-  return path.string() + ": " + std::strerror(errno);
-}
-
 bool write_copy(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::ifstream in(from, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
@@ -50,6 +46,15 @@ bool link_or_copy(const std::filesystem::path& from, const std::filesystem::path
 }
 
 }  // namespace
+
+std::string RetainFolder::problem(const std::filesystem::path& path) {
+  reason_ = errno;
+  return path.string() + ": " + std::strerror(reason_);
+}
+
+std::string RetainFolder::mend() const {
+  return way_out(reason_);
+}
 
 std::filesystem::path RetainFolder::path_of(std::size_t slot) const {
   return folder_ / (slot == 0 ? "retain_a" : "retain_b");
@@ -109,11 +114,13 @@ std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> byt
     std::error_code failed;
     std::filesystem::create_directories(folder_, failed);
     if (failed) {
+      reason_ = failed.value();
       return folder_.string() + ": " + failed.message();
     }
     try {
       open();
     } catch (const std::system_error& refused) {
+      reason_ = refused.code().value();
       return refused.code() == std::errc::resource_unavailable_try_again
                  ? folder_.string() + ": another task retains its values there by now"
                  : refused.what();

@@ -9,6 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include "support/atomic_file.hpp"
+
 namespace hysteron::runtime {
 namespace {
 
@@ -278,6 +280,11 @@ std::string Trace::problem() const {
   return problem_;
 }
 
+std::string Trace::mend() const {
+  const std::scoped_lock lock(mutex_);
+  return way_out(reason_);
+}
+
 void Trace::write_out(bool last) {
   std::vector<std::byte> records;
   ring_.take(records);
@@ -403,6 +410,7 @@ void Trace::cut(std::uint64_t lost, const std::string& problem) {
     next_try_ = std::chrono::steady_clock::now() + time_between_tries;
     const std::scoped_lock lock(mutex_);
     problem_ = problem;
+    reason_ = file_.reason();
     cut_.store(true, std::memory_order_release);
   }
 }

@@ -127,6 +127,8 @@ class Trace {
   [[nodiscard]] bool is_cut() const noexcept { return cut_.load(std::memory_order_acquire); }
   /// Why it was last cut; empty where it never was.
   [[nodiscard]] std::string problem() const;
+  /// What somebody can do who reads of it, as way_out() says it.
+  [[nodiscard]] std::string mend() const;
   /// What is to be told of the file beside that, as that somebody deleted it.
   [[nodiscard]] Remarks& remarks() noexcept { return remarks_; }
   /// Whether the next step begins another file.
@@ -169,6 +171,7 @@ class Trace {
   std::atomic<bool> wants_state_{false};  ///< the next file begins at one
   mutable std::mutex mutex_;              ///< never taken by the cyclic thread
   std::string problem_{};
+  int reason_ = 0;
   Remarks remarks_{};
   std::atomic<bool> cut_{false};
   std::atomic<bool> stop_{false};

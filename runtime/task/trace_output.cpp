@@ -112,6 +112,7 @@ TraceOutput::TraceOutput(std::filesystem::path file, std::size_t kept)
       throw;
     }
     problem_ = failed.what();
+    reason_ = failed.code().value();
   }
 }
 
@@ -152,6 +153,7 @@ bool TraceOutput::begin_next() {
     problem_ = failed.code() == std::errc::resource_unavailable_try_again
                    ? file_.string() + ": another task writes it by now"
                    : failed.what();
+    reason_ = failed.code().value();
     descriptor_ = before;
     (void)::flock(before, LOCK_EX | LOCK_NB);
     return false;
@@ -190,6 +192,7 @@ std::size_t TraceOutput::write(std::string_view bytes) {
     if (count < 0 && errno != EINTR) {
       const int reason = errno;
       problem_ = file_.string() + ": " + std::strerror(reason);
+      reason_ = reason;
       errno = reason;
       break;
     }

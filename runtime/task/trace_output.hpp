@@ -46,6 +46,8 @@ class TraceOutput {
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   /// Why writing failed last, with the file's name; empty where it did not.
   [[nodiscard]] const std::string& problem() const { return problem_; }
+  /// The same, as errno says it.
+  [[nodiscard]] int reason() const { return reason_; }
 
  private:
   void open_next();
@@ -56,6 +58,7 @@ class TraceOutput {
   std::uint64_t size_ = 0;
   bool has_moved_ = false;
   std::string problem_{};
+  int reason_ = 0;
 };
 
 }  // namespace hysteron::runtime

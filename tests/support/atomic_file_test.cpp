@@ -102,6 +102,10 @@ TEST(AtomicFile, WhatTheMachineLacksIsTheMend) {
   EXPECT_TRUE(mend_of_machine(EMFILE).starts_with("let more files be open: "));
   EXPECT_EQ(mend_of_machine(ENOENT), "");
   EXPECT_EQ(mend_of_machine(0), "");
+  EXPECT_EQ(way_out(ENOSPC), "Make room on the disk");
+  EXPECT_EQ(way_out(ENOENT), "Make the folder that is missing");
+  EXPECT_EQ(way_out(EACCES), "Give this user the right to write there");
+  EXPECT_EQ(way_out(EISDIR), "Clear what is in the way there");
 }
 
 TEST(AtomicFile, ADeviceIsWrittenInPlaceAndStays) {

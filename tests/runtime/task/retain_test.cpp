@@ -92,6 +92,16 @@ TEST(Retain, AFolderThatIsDeletedIsMadeAgainAndHeldAgain) {
   EXPECT_EQ(files.take_remark(), "");
   std::filesystem::remove_all(folder);
   {
+    const auto before = std::filesystem::current_path();
+    std::filesystem::create_directory(scratch.path() / "gone");
+    std::filesystem::current_path(scratch.path() / "gone");
+    std::filesystem::remove(scratch.path() / "gone");
+    RetainFolder nowhere("kept");
+    EXPECT_EQ(nowhere.write(0, bytes), "kept: No such file or directory");
+    EXPECT_EQ(nowhere.mend(), "Make the folder that is missing");
+    std::filesystem::current_path(before);
+  }
+  {
     RetainFolder other(folder);
     other.open();
     EXPECT_EQ(files.write(1, bytes), folder.string() + ": another task retains its values there by now");

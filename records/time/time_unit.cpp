@@ -87,6 +87,8 @@ constexpr auto names = std::to_array<std::string_view>({
     "time",
     "tout",
     "zeit",
+    "uptime",
+    "laufzeit",
     "timestamp",
     "time stamp",
     "time_stamp",
@@ -240,6 +242,11 @@ std::optional<TimeName> time_name(std::string_view name) {
     }
   }
   return std::nullopt;
+}
+
+std::optional<TimeUnit> unit_in_name(std::string_view name) {
+  const auto unit = time_unit(last_word(name));
+  return unit && unit->over == 1 ? unit : std::nullopt;
 }
 
 std::string_view last_word(std::string_view name) {

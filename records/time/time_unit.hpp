@@ -45,6 +45,9 @@ struct TimeName {
 /// Whether a column of this name is the time, by what tools of the field call it.
 [[nodiscard]] std::optional<TimeName> time_name(std::string_view name);
 
+/// The unit behind a name that does not say time: ms of tick_ms and of ms; seconds and parts of them alone.
+[[nodiscard]] std::optional<TimeUnit> unit_in_name(std::string_view name);
+
 /// `nsec` of header.stamp.nsec.
 [[nodiscard]] std::string_view last_word(std::string_view name);
 

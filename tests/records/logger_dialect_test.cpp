@@ -259,5 +259,19 @@ TEST(LoggerDialect, AnEmptyColumnWithoutANameIsNone) {
   EXPECT_TRUE(parse_record("log.csv", "t;u;\n0;1;\n1;2;\n2;3;\n").unreadable().empty());
 }
 
+/// A program of a microcontroller writes ms,u,y: seconds would be a thousand times too long.
+TEST(LoggerDialect, ANameThatIsAUnitOfTimeIsTheTime) {
+  for (const std::string_view name : {"ms", "tick_ms", "uptime_ms", "Uptime [ms]", "Laufzeit_ms"}) {
+    const Record record = parse_record("log.csv", fmt::format("{},u\n0,1\n10,2\n20,3\n30,4\n", name));
+    EXPECT_EQ(record.sample_time(), 0.01) << name;
+    EXPECT_THAT(notes_of(record), HasSubstr("in ms")) << name;
+  }
+  EXPECT_EQ(parse_record("log.csv", "u,us\n1,0\n2,50\n3,100\n4,150\n", {.time = "us"}).sample_time(), 50e-6);
+  // Beside a time it is a signal, and one that does not rise is none.
+  EXPECT_THAT(parse_record("log.csv", "ms,t\n0,0\n10,1\n20,2\n").column("ms").values, ElementsAre(0.0, 10.0, 20.0));
+  EXPECT_THAT(refusal_of("ms,u\n0,1\n10,2\n5,3\n"), HasSubstr("There is no column of time"));
+  EXPECT_THAT(refusal_of("u,tick_us\n1,0\n0,50\n3,100\n"), HasSubstr("--time tick_us[us]"));
+}
+
 }  // namespace
 }  // namespace hysteron::records

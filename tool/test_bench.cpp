@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "codegen/backends/st/bench.hpp"
-#include "records/read.hpp"
 #include "support/errors.hpp"
 #include "tool/test_judge.hpp"
 
@@ -27,7 +26,7 @@ void add_golden(const PlannedCase& planned, std::vector<StExpectation>& expected
   if (!fs::exists(planned.golden, unknown)) {
     refuse_golden(planned, "is missing");
   }
-  const records::Record golden = records::read_record(planned.golden.string());
+  const records::Record golden = read_golden(planned);
   if (golden.size() != planned.drive.steps) {
     refuse_golden(planned, fmt::format("has {} rows, the case {} steps", golden.size(), planned.drive.steps));
   }

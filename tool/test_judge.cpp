@@ -11,6 +11,7 @@
 #include "tool/compiled.hpp"
 #include "tool/output_record.hpp"
 #include "tool/test_plot.hpp"
+#include "tuning/record_options.hpp"
 #include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {
@@ -93,6 +94,12 @@ std::vector<Failure> judge_bits(const PlannedCase& planned, const std::vector<Si
   return failures;
 }
 
+records::Record read_golden(const PlannedCase& planned) {
+  // It holds outputs alone: a T among the inputs leaves a t no second reading.
+  const bool has_t = find_port(planned.program.graph.outputs, "T") != nullptr;
+  return records::read_record(planned.golden.string(), read_options({}, has_t ? &planned.program : nullptr));
+}
+
 ValuesByStep golden_values(const records::Column& column) {
   ValuesByStep values;
   for (std::size_t k = 0; k < column.values.size(); ++k) {
@@ -108,7 +115,7 @@ std::vector<Failure> judge_golden(const PlannedCase& planned, const std::vector<
   if (!std::filesystem::exists(planned.golden, unknown)) {
     return failure(fmt::format("the golden record {} is missing; write it with --update, and look it over", name));
   }
-  const records::Record golden = records::read_record(name);
+  const records::Record golden = read_golden(planned);
   if (golden.size() != planned.drive.steps) {
     return failure(fmt::format("the golden record {} has {} rows, the case {} steps; write it anew with --update", name,
                                golden.size(), planned.drive.steps));
@@ -145,7 +152,7 @@ std::string golden_text(const PlannedCase& planned, const std::vector<Signal>& o
   for (const Port& port : planned.program.graph.outputs) {
     names.push_back(port.name);
   }
-  return output_csv(planned.time, names, outputs, planned.test.float32);
+  return output_csv(planned.program.graph, planned.time, names, outputs, planned.test.float32);
 }
 
 }  // namespace hysteron::tool

@@ -25,6 +25,9 @@ struct Failure {
 /// Outputs against the golden record.
 [[nodiscard]] std::vector<Failure> judge_golden(const PlannedCase& planned, const std::vector<Signal>& outputs);
 
+/// The golden record of a case.
+[[nodiscard]] records::Record read_golden(const PlannedCase& planned);
+
 /// What a column of a golden record says of an output.
 [[nodiscard]] ValuesByStep golden_values(const records::Column& column);
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "codegen/graph/defaults.hpp"
+#include "codegen/graph/port_t.hpp"
 #include "codegen/graph/unit.hpp"
 #include "records/read.hpp"
 #include "records/resample.hpp"
@@ -183,6 +184,9 @@ records::ReadOptions read_options(const RecordOptions& options, const Program* p
     if (program != nullptr && program->graph.sample_time_ns > 0) {
       result.sample_time = program->graph.sample_time();
     }
+  }
+  if (const Port* const port = program != nullptr ? port_called_t(program->graph) : nullptr) {
+    result.signal_t = records::SignalT{.unit = port->unit, .sample_time = program->graph.sample_time()};
   }
   return result;
 }

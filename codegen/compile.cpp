@@ -194,18 +194,6 @@ Checked check_all(std::shared_ptr<const language::SourceFile> source, const Comp
   return result;
 }
 
-/// A top block meets records, in which t is the time.
-void warn_of_time(const Definitions& definitions, std::size_t top, Diagnostics& diagnostics) {
-  for (const Declared& declared : definitions.list[top].variables) {
-    const bool port = declared.kind == Declared::Kind::Input || declared.kind == Declared::Kind::Output;
-    if (port && language::same_name(declared.field.name, "T")) {
-      diagnostics.warning(error::port_named_as_time, definitions.source->place(declared.variable->name.span),
-                          fmt::format("'{}' is also the name of the time in a record", declared.field.name),
-                          "Choose another name: no record can hold this signal.");
-    }
-  }
-}
-
 /// Matrices of a held input belong to one sample time.
 void require_held_time(const Graph& graph, Diagnostics& diagnostics) {
   for (const Node& node : graph.nodes) {
@@ -260,7 +248,6 @@ void check(std::shared_ptr<const language::SourceFile> source, Diagnostics& diag
     }
     if (!contained[i]) {
       require_held_time(checked.programs[i].graph, found);
-      warn_of_time(checked.definitions, i, found);
     }
   }
   tidy_up(found, false, diagnostics);
@@ -273,7 +260,6 @@ Program compile(std::shared_ptr<const language::SourceFile> source, const Compil
   const std::int64_t top = find_top(checked.definitions, options.top, found);
   if (top >= 0) {
     require_held_time(checked.programs[static_cast<std::size_t>(top)].graph, found);
-    warn_of_time(checked.definitions, static_cast<std::size_t>(top), found);
   }
   tidy_up(found, options.any_order, diagnostics);
   return top < 0 ? Program{} : std::move(checked.programs[static_cast<std::size_t>(top)]);

@@ -84,7 +84,8 @@ class Columns {
   TableColumn column(std::size_t index) {
     NumberColumn& given = columns_[index];
     const bool is_time = may_be_time(columns_, index, options_);
-    TableColumn result{.name = std::move(given.name), .unit = std::move(given.unit), .has_values = true};
+    TableColumn result{
+        .name = std::move(given.name), .unit = std::move(given.unit), .has_values = true, .is_time = given.is_time};
     result.kind = given.is_truth ? CellKind::Truth : CellKind::Number;
     result.place = {.file = file_};
     if (given.fault) {

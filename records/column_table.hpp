@@ -16,6 +16,7 @@ struct NumberColumn {
   std::string unit{};
   std::vector<double> values{};
   bool is_truth = false;              ///< nothing lies between two of its values
+  bool is_time = false;               ///< by what the format says; no signal, whatever it is called
   std::optional<Diagnostic> fault{};  ///< why it is no signal, and has no values
 };
 

@@ -19,7 +19,7 @@ std::string header_cell(const Column& column) {
 }  // namespace
 
 std::string csv_text(const Record& record) {
-  std::string text = "t";
+  std::string text(record.time_heading());
   for (const Column& column : record.columns()) {
     text += ',' + header_cell(column);
   }

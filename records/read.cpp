@@ -12,12 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "records/column_names.hpp"
 #include "records/formats.hpp"
 #include "records/resampled_columns.hpp"
 #include "records/scaled_unit.hpp"
 #include "records/statistics.hpp"
 #include "records/table.hpp"
-#include "records/text/unit_text.hpp"
 #include "records/time/row_order.hpp"
 #include "records/time/split_time.hpp"
 #include "records/time/time_column.hpp"
@@ -31,67 +31,10 @@
 #include "support/option_words.hpp"
 #include "support/rounded_text.hpp"
 #include "support/text_file.hpp"
+#include "support/time_heading.hpp"
 
 namespace hysteron::records {
 namespace {
-
-// ---- names ----------------------------------------------------------------------------------------------------------
-
-/// The one column that is meant.
-std::size_t the_column(const Table& table, const ColumnName& wanted) {
-  const std::vector<std::size_t> found = columns_called(table, wanted.in_file);
-  if (found.size() == 1) {
-    return found.front();
-  }
-  if (found.size() > 1) {
-    throw InputError(
-        error::two_readings, table.columns[found[1]].place,
-        fmt::format("{} columns are called {}.", found.size(), wanted.in_file),
-        fmt::format("name it by its number from 1 on, as --column {}={}.", wanted.name, found.front() + 1));
-  }
-  const std::vector<std::string> names = names_of(table);
-  const auto near = nearest_name(wanted.in_file, names);
-  throw InputError(
-      error::missing_column, table.place,
-      fmt::format("There is no column {}; the columns are {}.", wanted.in_file, fmt::join(names, ", ")),
-      near.empty() ? std::string("name one of these with --column.") : fmt::format("did you mean {}?", near));
-}
-
-/// Gives the columns the names that are stated. A column that had the name before is passed over.
-void rename(Table& table, const ReadOptions& options) {
-  std::vector<std::optional<std::size_t>> found;
-  for (const ColumnName& one : options.columns) {
-    for (const ColumnName& other : options.columns) {
-      if (&other < &one && equal_ignoring_case(other.name, one.name)) {
-        throw InputError(error::two_readings, table.place,
-                         fmt::format("{} is given two columns, {} and {}.", one.name, other.in_file, one.in_file),
-                         "name one of them.");
-      }
-    }
-    if (one.is_general && columns_called(table, one.in_file).empty()) {
-      table.notes.push_back(
-          fmt::format("there is no column {}, which the parameter file names for {}", one.in_file, one.name));
-      found.emplace_back();
-    } else {
-      found.emplace_back(the_column(table, one));
-    }
-  }
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    if (!found[k]) {
-      continue;
-    }
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-      if (i != *found[k] && equal_ignoring_case(table.columns[i].name, options.columns[k].name)) {
-        table.columns[i].name += fmt::format(" ({})", i + 1);
-      }
-    }
-    TableColumn& column = table.columns[*found[k]];
-    column.in_file = column.name;
-    column.name = options.columns[k].name;
-    column.unit = options.columns[k].unit.empty() ? column.unit : unit_of_word(options.columns[k].unit);
-    column.is_named = true;
-  }
-}
 
 // ---- time -----------------------------------------------------------------------------------------------------------
 
@@ -194,10 +137,15 @@ std::string stepping_signal(const Table& table, const Times& times) {
 // ---- columns --------------------------------------------------------------------------------------------------------
 
 /// What makes a column no signal; nothing where it is one.
-std::optional<Diagnostic> fault_of(const Table& table, std::size_t index) {
+std::optional<Diagnostic> fault_of(const Table& table, const Times& times, std::size_t index) {
   const TableColumn& column = table.columns[index];
+  // T beside a t that is the time is no second column of its name.
+  const auto is_time_beside = [&](std::size_t i) {
+    return times.uses(i) && is_called_t(column.name) &&
+           (table.columns[i].name != column.name || !column.in_file.empty());
+  };
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    if (i != index && equal_ignoring_case(table.columns[i].name, column.name)) {
+    if (i != index && equal_ignoring_case(table.columns[i].name, column.name) && !is_time_beside(i)) {
       return Diagnostic{.number = error::duplicate_column,
                         .place = column.place,
                         .cause = fmt::format("There are two columns {}.", column.name),
@@ -269,16 +217,17 @@ Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven
   if (resample) {
     even.emplace(table, times, options);
   }
+  settle_names_of_t(table, times, options);
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     TableColumn& column = table.columns[i];
     const bool is_empty = !column.is_named && !column.has_values;  // the edge of a table, a separator at each end
-    if (std::ranges::find(times.used, i) != times.used.end() || column.is_part_of_time || is_empty) {
+    if (times.uses(i) || column.is_part_of_time || is_empty) {
       continue;
     }
     if (even && even->bridges(i)) {
       column.fault.reset();
     }
-    if (auto fault = fault_of(table, i)) {
+    if (auto fault = fault_of(table, times, i)) {
       if (fault->number == error::number_not_finite && is_worth_bridging(column, table.rows)) {
         fault->mend +=
             fmt::format(" It is {} of {} rows: --resample linear bridges them, or hold, where the signal steps.",
@@ -286,9 +235,6 @@ Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven
       }
       unreadable.push_back({.name = column.name, .fault = std::move(*fault)});
       continue;
-    }
-    if (equal_ignoring_case(column.name, "t")) {
-      column.name += fmt::format(" ({})", i + 1);  // t is the time; this is a temperature or a torque
     }
     if (const auto mark = mark_of_missing(column.values)) {
       table.notes.push_back(said_of_mark(column.name, *mark, options.first_row));
@@ -308,14 +254,15 @@ Record record_of(Table table, const ReadOptions& options, Uneven uneven = Uneven
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
       table.source->names[i] = table.columns[i].name;
     }
-    if (!times.column.empty()) {
-      *std::ranges::find(table.source->names, times.column) = "t";
+    if (times.index) {
+      table.source->names[*times.index].clear();
     }
   }
   // Of a record that was resampled no row stands in the file.
   Record record(even ? even->seconds() : std::move(times.seconds), even ? even->sample_time() : times.grid.sample_time,
                 std::move(columns), table.place, even ? nullptr : table.source);
   record.set_time_name(times.column);
+  record.set_beside_t(options.signal_t.has_value());
   for (Record::Unreadable& one : unreadable) {
     record.add_unreadable(std::move(one.name), std::move(one.fault));
   }

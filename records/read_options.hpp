@@ -34,6 +34,12 @@ struct ColumnWay {
   bool is_general = false;  ///< said for many records, in a parameter file: a record without the column is read
 };
 
+/// A port of the diagram that is called T, as the time is: what tells the two apart in a record.
+struct SignalT {
+  std::string unit{};        ///< empty where the diagram states none
+  double sample_time = 0.0;  ///< s, of the diagram; 0 where it states none
+};
+
 struct ReadOptions {
   std::string time{};            ///< the column of the time; found where it is empty
   std::string time_unit{};       ///< its unit; what the file says where it is empty
@@ -45,6 +51,7 @@ struct ReadOptions {
   std::optional<double> end{};    ///< s: rows from it on are left out
   std::size_t first_row = 1;      ///< rows of numbers before it are left out
   std::optional<std::size_t> last_row{};
+  std::optional<SignalT> signal_t{};
   Resampling resampling = Resampling::None;  ///< of all columns that `ways` does not name
   std::vector<ColumnWay> ways{};
   std::vector<std::string> stepping{};  ///< columns that are held, however others are resampled: BOOL, DINT, WORD

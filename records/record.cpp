@@ -112,13 +112,21 @@ Place Record::place(std::string_view column, std::size_t row) const {
   return source_ == nullptr ? Place{.file = file()} : source_->place(column, first_row_ + row);
 }
 
+Place Record::place_of_time(std::size_t row) const {
+  return place("", row);
+}
+
 void Record::add(Column column) {
   if (column.values.size() != size()) {
     throw std::invalid_argument(
         fmt::format("column {} has {} values for {} rows", column.name, column.values.size(), size()));
   }
-  if (column.name.empty() || equal_ignoring_case(column.name, "t") || find(column.name) != nullptr) {
-    throw std::invalid_argument(fmt::format("column name \"{}\" is empty, t, or taken", column.name));
+  if (column.name.empty() || find(column.name) != nullptr) {
+    throw std::invalid_argument(fmt::format("column name \"{}\" is empty or taken", column.name));
+  }
+  if (is_called_t(column.name)) {
+    column.name = signal_heading(column.name);
+    is_beside_t_ = true;
   }
   columns_.push_back(std::move(column));
 }
@@ -157,6 +165,7 @@ Record Record::slice(RowRange rows) const {
   result.unreadable_ = unreadable_;
   result.notes_ = notes_;
   result.time_name_ = time_name_;
+  result.is_beside_t_ = is_beside_t_;
   for (const Column& column : columns_) {
     Column part = column;
     part.values = cut(column.values);

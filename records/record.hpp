@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/diagnostic.hpp"
+#include "support/time_heading.hpp"
 
 namespace hysteron::records {
 
@@ -31,7 +32,8 @@ struct RowRange {
   [[nodiscard]] std::size_t size() const { return last - first; }
 };
 
-/// Column names are compared without regard to case, as the language does; `t`, the time, is none of the columns.
+/// Column names are compared without regard to case, as the language does. The time is none of the columns; one that is
+/// called t is a signal, and its name is T.
 class Record {
  public:
   /// A record without columns, at times start, start + sample_time, … The sample time is in seconds, above 0.
@@ -61,9 +63,10 @@ class Record {
 
   /// Where the number of a column and row stands in the file; the file as a whole where that is not known.
   [[nodiscard]] Place place(std::string_view column, std::size_t row) const;
+  [[nodiscard]] Place place_of_time(std::size_t row) const;
 
   /// Appends a column of as many values as there are rows. Throws std::invalid_argument on another number of values
-  /// and on a name that is empty, taken or `t`.
+  /// and on a name that is empty or taken.
   void add(Column column);
 
   /// Replaces the values of a column. Throws InputError HY502 where there is none, std::invalid_argument on another
@@ -93,6 +96,11 @@ class Record {
   [[nodiscard]] const std::string& time_name() const { return time_name_; }
   void set_time_name(std::string name) { time_name_ = std::move(name); }
 
+  /// What the time is called where the record is written: `time` where a column is called T, or another record of the
+  /// same signals may have one; else `t`.
+  [[nodiscard]] std::string_view time_heading() const { return hysteron::time_heading(is_beside_t_); }
+  void set_beside_t(bool is_beside_t) { is_beside_t_ = is_beside_t || find("T") != nullptr; }
+
   /// The rows of a range, with their times as they are.
   [[nodiscard]] Record slice(RowRange rows) const;
 
@@ -110,6 +118,7 @@ class Record {
   std::vector<Unreadable> unreadable_{};
   std::vector<std::string> notes_{};
   std::string time_name_ = "t";
+  bool is_beside_t_ = false;
 };
 
 }  // namespace hysteron::records

@@ -28,6 +28,7 @@ struct TableColumn {
   std::vector<std::size_t> missing{};      ///< rows whose cell is empty or no finite number, rising
   bool is_gappy = false;                   ///< all that is wrong with it is missing
   bool has_values = false;                 ///< at least one of its cells is not empty
+  bool is_time = false;                    ///< by what the format says; no signal, whatever it is called
   bool is_part_of_time = false;            ///< joined to the column of the time: its milliseconds
   std::vector<std::uint32_t> words{};      ///< of a column that names signals: which word of the dictionary
   std::vector<std::string> dictionary{};   ///< its words, in the order in which they come
@@ -50,7 +51,8 @@ inline constexpr std::string_view another_column = "name another column with --c
 
 [[nodiscard]] std::vector<std::string> names_of(const Table& table);
 
-/// The columns of a name, without regard to case; where there is none, the one of that number, from 1 on.
+/// The columns of a name, without regard to case; of several, the one that is written so. Where there is none, the one
+/// of that number, from 1 on.
 [[nodiscard]] std::vector<std::size_t> columns_called(const Table& table, std::string_view name);
 
 }  // namespace hysteron::records

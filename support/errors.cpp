@@ -2,7 +2,6 @@
 
 #include <array>
 
-
 namespace hysteron {
 namespace {
 
@@ -52,7 +51,6 @@ constexpr std::array titles{
     ErrorTitle{error::recursive_block, "Block that contains itself"},
     ErrorTitle{error::parameter_out_of_range, "Parameter out of its range"},
     ErrorTitle{error::ambiguous_top, "No single top block"},
-    ErrorTitle{error::port_named_as_time, "Port named as the time"},
     ErrorTitle{error::other_meaning_elsewhere, "Other meaning elsewhere"},
     ErrorTitle{error::conditional_call, "Block called under a condition"},
     ErrorTitle{error::unusable_fmu, "FMU that cannot be used"},

@@ -59,7 +59,6 @@ inline constexpr int unknown_function = 212;
 inline constexpr int recursive_block = 213;
 inline constexpr int parameter_out_of_range = 214;
 inline constexpr int ambiguous_top = 215;
-inline constexpr int port_named_as_time = 216;
 inline constexpr int other_meaning_elsewhere = 217;
 inline constexpr int conditional_call = 218;
 inline constexpr int unusable_fmu = 219;

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "codegen/graph/port_t.hpp"
 #include "plots/page.hpp"
 #include "records/csv.hpp"
 #include "support/markup.hpp"
@@ -183,7 +184,9 @@ std::vector<OutputFile> goal_report_files(const std::filesystem::path& folder, c
     if (!problem.effort.empty()) {
       columns.push_back({problem.effort, problem.effort_unit, plant.response.effort});
     }
-    contents.push_back(records::csv_text({times(problem), problem.drive.sample_time, std::move(columns), {}}));
+    records::Record record(times(problem), problem.drive.sample_time, std::move(columns), {});
+    record.set_beside_t(port_called_t(problem.graph()) != nullptr);
+    contents.push_back(records::csv_text(record));
   }
   const auto paths = goal_report_paths(folder, problem.plants.size());
   std::vector<OutputFile> files;

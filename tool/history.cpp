@@ -22,6 +22,7 @@
 #include "support/names.hpp"
 #include "support/overwriting.hpp"
 #include "support/rounded_text.hpp"
+#include "support/time_heading.hpp"
 #include "tool/commands.hpp"
 #include "tool/history_time.hpp"
 #include "tool/option_values.hpp"
@@ -180,7 +181,9 @@ records::Record record_of(HistoryReader& reader, const RecordedRun& run, const s
       time.push_back(static_cast<double>(slot * run.step * run.period) / 1e9);
     }
   }
-  return {std::move(time), run.sample_time(), std::move(columns), Place{}};
+  records::Record record(std::move(time), run.sample_time(), std::move(columns), Place{});
+  record.set_beside_t(std::ranges::any_of(run.points, is_called_t, &RecordedPoint::name));
+  return record;
 }
 
 std::string left_out(const std::vector<Stretch>& all, const Stretch& taken) {

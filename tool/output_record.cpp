@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "codegen/graph/port_t.hpp"
 #include "support/numbers.hpp"
 
 namespace hysteron::tool {
@@ -20,11 +21,12 @@ std::string float_text(double value) {
 
 }  // namespace
 
-std::string output_csv(std::span<const double> time, const std::vector<std::string>& names,
+std::string output_csv(const Graph& graph, std::span<const double> time, const std::vector<std::string>& names,
                        const std::vector<Signal>& columns, bool float32) {
-  std::string text = "t";
+  std::string text(time_heading(graph));
   for (const std::string& name : names) {
-    text += ',' + name;
+    text += ',';
+    text += signal_heading(name);
   }
   text += '\n';
   text.reserve(text.size() + time.size() * (columns.size() + 1) * 12);

@@ -32,7 +32,6 @@
 #include "tool/tune_words.hpp"
 #include "tuning/excitation.hpp"
 #include "tuning/record_units.hpp"
-#include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -296,7 +295,6 @@ int show(const RecordCommandOptions& options, Console& console) {
                                    std::filesystem::path(options.diagram.file).stem().string() + ".toml"));
     }
     program = compile_file(options.diagram.file, {.top = options.diagram.top}, warnings);
-    refuse_ports_named_as_time(warnings);
   }
   const std::string bytes = read_text_file(options.file);
   console.sources().put(options.file, bytes);

@@ -160,7 +160,7 @@ int run_command(const RunOptions& options, Console& console) {
                                     .progress = [&](double fraction) { progress.update(fraction); }},
                                    diagnostics);
   progress.finish();
-  const auto text = output_csv(record.time(), run.names, run.values, options.diagram.float32);
+  const auto text = output_csv(run.program.graph, record.time(), run.names, run.values, options.diagram.float32);
   if (options.output == "-") {
     console.print(text);
   } else {

@@ -7,6 +7,7 @@
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "support/time_heading.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
 #include "tool/replayed.hpp"
@@ -20,7 +21,7 @@ constexpr std::string_view serve_replay_examples = R"(Examples:
   hysteron diagnose plant.st --params plant.toml --log record.csv
 
 Runs the diagram over the recorded inputs, from the recorded state and parameters, and compares every output, bit by bit.
-The record has t, which counts steps, and inputs and outputs as they left, for run, tune and diagnose. It runs by
+The record has the time, which counts steps, and inputs and outputs as they left, for run, tune and diagnose. It runs by
 the engine that the trace was recorded with, for the bytes of its state.
 Exit codes: 0 the same bits; 1 other bits, steps that were dropped or cannot be replayed, or no step; 2 no trace of this
 diagram.
@@ -34,13 +35,15 @@ struct ServeReplayOptions {
 };
 
 std::string header_of(const runtime::ProgramShape& shape) {
-  std::string header = "t";
+  std::string header;
+  bool has_t = false;
   for (const auto* const signals : {&shape.inputs, &shape.outputs}) {
     for (const runtime::ProgramSignal& signal : *signals) {
-      header += "," + signal.name + (signal.unit.empty() ? "" : " [" + signal.unit + "]");
+      header += fmt::format(",{}{}", signal_heading(signal.name), signal.unit.empty() ? "" : " [" + signal.unit + "]");
+      has_t = has_t || is_called_t(signal.name);
     }
   }
-  return header + "\n";
+  return fmt::format("{}{}\n", time_heading(has_t), header);
 }
 
 std::string row_of(const runtime::ProgramShape& shape, const runtime::TraceStep& step) {

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "codegen/backends/st/bench.hpp"
-#include "records/read.hpp"
 #include "support/errors.hpp"
 #include "tool/test_judge.hpp"
 

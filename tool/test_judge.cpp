@@ -12,6 +12,7 @@
 #include "tool/output_record.hpp"
 #include "tool/test_plot.hpp"
 #include "tuning/record_units.hpp"
+#include "tuning/record_options.hpp"
 #include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {
@@ -95,7 +96,10 @@ std::vector<Failure> judge_bits(const PlannedCase& planned, const std::vector<Si
 }
 
 records::Record golden_record(const PlannedCase& planned) {
-  records::Record golden = records::read_record(planned.golden.string());
+  // It holds outputs alone: a T among the inputs leaves a t no second reading.
+  const bool has_t = find_port(planned.program.graph.outputs, "T") != nullptr;
+  records::Record golden =
+      records::read_record(planned.golden.string(), read_options({}, has_t ? &planned.program : nullptr));
   Diagnostics diagnostics;
   convert_units(golden, planned.program, diagnostics);
   if (diagnostics.has_errors()) {
@@ -158,7 +162,7 @@ std::string golden_text(const PlannedCase& planned, const std::vector<Signal>& o
   for (const Port& port : planned.program.graph.outputs) {
     names.push_back(port.name);
   }
-  return output_csv(planned.time, names, outputs, planned.test.float32);
+  return output_csv(planned.program.graph, planned.time, names, outputs, planned.test.float32);
 }
 
 }  // namespace hysteron::tool

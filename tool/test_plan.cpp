@@ -14,6 +14,7 @@
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
+#include "tuning/record_options.hpp"
 #include "tuning/record_units.hpp"
 
 namespace hysteron::tool {
@@ -126,7 +127,11 @@ class CasePlan {
   void settle_steps() {
     Drive& drive = planned_.drive;
     if (!test().csv.text.empty()) {
-      record_ = read_named(test().csv, folder_, [](const std::string& path) { return records::read_record(path); });
+      record_ = read_named(test().csv, folder_, [&](const std::string& path) {
+        // Its inputs alone are taken: a T among the outputs leaves a t no second reading.
+        const bool has_t = find_port(graph().inputs, "T") != nullptr;
+        return records::read_record(path, read_options({}, has_t ? &planned_.program : nullptr));
+      });
       convert_units(*record_, planned_.program, diagnostics_);
       for (const std::string& note : record_->notes()) {
         planned_.notes.emplace_back(record_->file(), note);

@@ -18,7 +18,6 @@
 #include "tool/tune_options.hpp"
 #include "tool/tune_report.hpp"
 #include "tool/tune_words.hpp"
-#include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -92,7 +91,6 @@ int tune(const TuneOptions& options, Console& console) {
   Diagnostics warnings;
   const Program program = compile_file(options.diagram.file,
                                        {.top = options.diagram.top, .any_order = options.diagram.any_order}, warnings);
-  refuse_ports_named_as_time(warnings);
   const std::vector<records::Record> records =
       read_and_told(options.logs, with_settings(options.record, file.record), program, true, warnings);
   const OutputErrorProblem problem = output_error_problem(program, file, records);

@@ -13,7 +13,6 @@
 #include "tool/goal_report.hpp"
 #include "tuning/goal/contradiction.hpp"
 #include "tuning/goal/goal_json.hpp"
-#include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -33,7 +32,6 @@ int tune_goal(const TuneOptions& options, const parameters::ParameterFile& file,
   const Program program =
       compile_file(options.diagram.file,
                    {.top = options.diagram.top, .any_order = options.diagram.any_order, .keep_names = true}, warnings);
-  refuse_ports_named_as_time(warnings);
   const std::vector<records::Record> records =
       options.logs.empty()
           ? std::vector<records::Record>()

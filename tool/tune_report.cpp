@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "codegen/cosimulation/fmu.hpp"
+#include "codegen/graph/port_t.hpp"
 #include "codegen/interpreter/directions.hpp"
 #include "records/csv.hpp"
 #include "support/rounded_text.hpp"
@@ -144,7 +145,9 @@ std::vector<OutputFile> report_files(const std::filesystem::path& folder, const 
       columns.push_back({port.name + "_MODEL", port.unit, report.fit.model[record][output]});
       columns.push_back({port.name + "_RESIDUAL", port.unit, residuals_of(report, record, output)});
     }
-    contents.push_back(records::csv_text({experiment.time, experiment.drive.sample_time, std::move(columns), {}}));
+    records::Record residuals(experiment.time, experiment.drive.sample_time, std::move(columns), {});
+    residuals.set_beside_t(port_called_t(report.problem.program.graph) != nullptr);
+    contents.push_back(records::csv_text(residuals));
   }
   const auto paths = report_paths(folder, report.problem.experiments.size());
   std::vector<OutputFile> files;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "codegen/graph/defaults.hpp"
+#include "codegen/graph/port_t.hpp"
 #include "codegen/graph/unit.hpp"
 #include "records/read.hpp"
 #include "records/resample.hpp"
@@ -241,6 +242,9 @@ records::ReadOptions read_options(const RecordOptions& options, const Program* p
         }
       }
     }
+  }
+  if (const Port* const port = program != nullptr ? port_called_t(program->graph) : nullptr) {
+    result.signal_t = records::SignalT{.unit = port->unit, .sample_time = program->graph.sample_time()};
   }
   return result;
 }

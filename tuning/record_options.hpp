@@ -47,7 +47,7 @@ auto texts_of(Options& options) {
 [[nodiscard]] RecordOptions with_settings_of(const std::string& parameter_file, const RecordOptions& options);
 
 /// What they say. Throws InputError HY730 for one that says nothing. With a diagram, a record is resampled to its
-/// sample time, and its BOOL, INT, DINT and WORD are held.
+/// sample time, its BOOL, INT, DINT and WORD are held, and a port T is told from the time.
 [[nodiscard]] records::ReadOptions read_options(const RecordOptions& options, const Program* program = nullptr);
 
 /// What was understood of a record, a sentence each without capital and point: notes of the reader, inputs that have no

@@ -10,24 +10,12 @@
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
+#include "support/time_heading.hpp"
 #include "tuning/float32_run.hpp"
 #include "tuning/record_units.hpp"
 #include "tuning/signal_names.hpp"
 
 namespace hysteron {
-void refuse_ports_named_as_time(const Diagnostics& warnings) {
-  Diagnostics errors;
-  for (Diagnostic one : warnings.all()) {
-    if (one.number == error::port_named_as_time) {
-      one.severity = Severity::Error;
-      errors.add(std::move(one));
-    }
-  }
-  if (errors.has_errors()) {
-    throw InputError(std::move(errors));
-  }
-}
-
 void check_finite(const std::vector<Place>& places, std::span<const double> time, const std::vector<std::string>& names,
                   const std::vector<Signal>& columns, Diagnostics& diagnostics) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -49,7 +37,6 @@ void check_finite(const std::vector<Place>& places, std::span<const double> time
 }
 
 Drive drive_of(Program& program, records::Record& record, Diagnostics& diagnostics) {
-  refuse_ports_named_as_time(diagnostics);
   convert_units(record, program, diagnostics);
   settle_sample_time(record, program, diagnostics);
   return drive_from(record, program, {}, diagnostics);
@@ -70,9 +57,8 @@ RecordedRun run_over(Program program, records::Record& record, const RunRequest&
     for (const NamedSignal& one : find_signals(graph, path, {.file = graph.source->path})) {
       watched.push_back(one.wire);
       places.push_back({.file = graph.source->path});
-      // A variable T would stand in a second column t.
-      const bool is_time = equal_ignoring_case(one.name, "t");
-      result.names.push_back(in_capitals(is_time ? graph.name + "." + one.name : one.name));
+      // A variable T would stand in a second column t, or beside a port T.
+      result.names.push_back(in_capitals(is_called_t(one.name) ? graph.name + "." + one.name : one.name));
       result.units.emplace_back();
     }
   }

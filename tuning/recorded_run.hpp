@@ -31,17 +31,14 @@ struct RecordedRun {
 };
 
 /// Runs a program from its reset over a record, whose columns are brought to the units of the ports. Throws InputError
-/// with everything found where they do not fit: HY216, HY502, HY704, HY707, HY708, HY729. Adds warnings, and HY706 as
+/// with everything found where they do not fit: HY502, HY704, HY707, HY708, HY729. Adds warnings, and HY706 as
 /// an error where an output is no finite number: the values are given all the same.
 [[nodiscard]] RecordedRun run_over(Program program, records::Record& record, const RunRequest& request,
                                    Diagnostics& diagnostics);
 
 /// What a record drives a program by: its columns brought to the units of the ports, its sample time held against that
-/// of the diagram. Throws InputError HY216; reports what else does not fit.
+/// of the diagram. Reports what does not fit.
 [[nodiscard]] Drive drive_of(Program& program, records::Record& record, Diagnostics& diagnostics);
-
-/// Refuses a diagram with a port that no record can hold: throws InputError where HY216 is among its warnings.
-void refuse_ports_named_as_time(const Diagnostics& warnings);
 
 /// Reports HY706 for each column that holds an infinity or not-a-number: the first step where it does, and how many.
 /// \p places are those of the columns in the diagram; none where it is known from elsewhere.

@@ -152,7 +152,7 @@ void settle_sample_time(const records::Record& record, Program& program, Diagnos
     return;
   }
   diagnostics.error(
-      error::sample_time_mismatch, record.place("t", 1),
+      error::sample_time_mismatch, record.place_of_time(1),
       fmt::format("The record has a sample time of {} s, {} one of {} s.", rounded_text(recorded), graph.name,
                   rounded_text(stated)),
       fmt::format("{}state @ts {} in the diagram, or bring the record to {} s: --resample linear, or hold "

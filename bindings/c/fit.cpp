@@ -10,7 +10,6 @@
 #include "tuning/goal/goal_json.hpp"
 #include "tuning/goal/goal_search.hpp"
 #include "tuning/output_error.hpp"
-#include "tuning/recorded_run.hpp"
 
 struct hysteron_fit {
   std::string json;
@@ -104,7 +103,6 @@ hysteron_fit* hysteron_tune(const hysteron_diagram* diagram, const hysteron_reco
                                  "give a measured record to fit it, or a [goal] for a control loop.");
     }
     hysteron::Diagnostics diagnostics = diagram->warnings;
-    hysteron::refuse_ports_named_as_time(diagnostics);
     const auto measured =
         record_count == 0 ? std::vector<hysteron::records::Record>()
                           : hysteron::bindings::in_units_of(*diagram, records, record_count, true, diagnostics, call);

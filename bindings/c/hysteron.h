@@ -132,6 +132,8 @@ HYSTERON_API size_t hysteron_record_rows(const hysteron_record* record);
 HYSTERON_API double hysteron_record_sample_time(const hysteron_record* record);
 /* In seconds, of each row. */
 HYSTERON_API const double* hysteron_record_time(const hysteron_record* record);
+/* What the time is called beside the columns: "t", or "time" where a signal of the diagram is called T. */
+HYSTERON_API const char* hysteron_record_time_name(const hysteron_record* record);
 /* Columns, without the time. NULL where there is none of that index. */
 HYSTERON_API size_t hysteron_record_columns(const hysteron_record* record);
 HYSTERON_API const char* hysteron_record_name(const hysteron_record* record, size_t column);

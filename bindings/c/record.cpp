@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "codegen/graph/port_t.hpp"
 #include "records/column_table.hpp"
 #include "records/read.hpp"
 #include "support/errors.hpp"
@@ -124,6 +125,10 @@ const double* hysteron_record_time(const hysteron_record* record) {
   return record != nullptr ? record->record.time().data() : nullptr;
 }
 
+const char* hysteron_record_time_name(const hysteron_record* record) {
+  return record != nullptr ? record->record.time_heading().data() : nullptr;
+}
+
 size_t hysteron_record_columns(const hysteron_record* record) {
   return record != nullptr ? record->record.columns().size() : 0;
 }
@@ -167,6 +172,7 @@ hysteron_record* hysteron_run(const hysteron_diagram* diagram, const hysteron_re
     const std::vector<double> time(input.time().begin(), input.time().end());
     auto result = std::make_unique<hysteron_record>(
         hysteron_record{records::Record(time, input.sample_time(), std::move(columns), {})});
+    result->record.set_beside_t(hysteron::port_called_t(run.program.graph) != nullptr);
     const auto notes = hysteron::what_was_read(input, run.program, true);
     call.warn(diagnostics);
     // What was understood when the record was read has been said then.

@@ -7,6 +7,7 @@
 
 #include "codegen/compile.hpp"
 #include "codegen/graph/fmu_files.hpp"
+#include "codegen/graph/port_t.hpp"
 #include "diagnosis/report/page.hpp"
 #include "diagnosis/report/verdict_json.hpp"
 #include "records/csv.hpp"
@@ -36,6 +37,11 @@ records::Record command_record(const NextExperiment& next) {
     record.add({.name = rest.input, .unit = rest.unit, .values = std::vector<double>(rows, rest.value)});
   }
   return record;
+}
+
+std::string record_text(records::Record record, bool is_beside_t) {
+  record.set_beside_t(is_beside_t);
+  return records::csv_text(record);
 }
 
 constexpr std::string_view verdict_file = "verdict.json";
@@ -92,16 +98,19 @@ std::vector<OutputFile> diagnosis_files(const std::filesystem::path& folder, con
   files.push_back(
       {.path = folder / improved_parameters_file,
        .contents = parameters::parameter_text(found.improved_file, {}, "From hysteron diagnose.\n" + found.summary)});
-  files.push_back({.path = folder / report_file, .contents = report_page(found, improved_program(found))});
+  const Program improved = improved_program(found);
+  const bool has_t = port_called_t(improved.graph) != nullptr;
+  files.push_back({.path = folder / report_file, .contents = report_page(found, improved)});
   if (!found.feedforward_text.empty()) {
     files.push_back({.path = folder / feedforward_file, .contents = found.feedforward_text});
   }
   if (!found.next.time.empty()) {
-    files.push_back({.path = folder / next_experiment_file, .contents = records::csv_text(command_record(found.next))});
+    files.push_back(
+        {.path = folder / next_experiment_file, .contents = record_text(command_record(found.next), has_t)});
   }
   for (std::size_t i = 0; i < found.traces.size(); ++i) {
     files.push_back({.path = folder / traces_file(i + 1, found.traces.size()),
-                     .contents = records::csv_text(trace_record(found.traces[i]))});
+                     .contents = record_text(trace_record(found.traces[i]), has_t)});
   }
   return files;
 }

@@ -66,7 +66,7 @@ Table read_wav(const std::string& file, std::string bytes, const ReadOptions& op
   }
   const auto channels = static_cast<std::size_t>(info.channels);
   std::vector<NumberColumn> columns(channels + 1);
-  columns[0] = {.name = "t", .unit = "s"};
+  columns[0] = {.name = "t", .unit = "s", .is_time = true};
   for (std::size_t i = 0; i < channels; ++i) {
     columns[i + 1].name = fmt::format("CH{}", i + 1);
   }

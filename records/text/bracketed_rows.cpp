@@ -9,7 +9,7 @@
 namespace hysteron::records {
 namespace {
 
-constexpr std::size_t looked_at = 20;
+constexpr std::size_t lines_looked_at = 20;
 
 /// `[0, 1],` and `(0, 1)`, with digits in it and no letters but the e of 1e-3.
 bool is_bracketed(std::string_view line) {
@@ -23,7 +23,7 @@ bool is_bracketed(std::string_view line) {
 
 bool clear_brackets(std::string& text) {
   std::size_t lines = 0;
-  for (std::size_t at = 0; at < text.size() && lines < looked_at;) {
+  for (std::size_t at = 0; at < text.size() && lines < lines_looked_at;) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::string_view line = std::string_view(text).substr(at, end - at);
     at = end + 1;

@@ -96,6 +96,7 @@ std::optional<KeyedHead> keyed_head(const std::vector<Line>& head, std::size_t f
     result.columns[c].cell = c;
     result.columns[c].name = is_time ? "t" : std::string(names[signal]);
     result.columns[c].unit = is_time ? unit_of_time : std::string();
+    result.columns[c].is_time = is_time;
     if (!is_time && !counts && signal < units.size()) {
       result.columns[c].unit = units[signal];
     }

@@ -76,7 +76,7 @@ class HeadReader {
     layout_.stated = stated_rate(head_, first_row_);
     if (const auto channels = channel_head(head_, first_row_, cells_in_row_, layout_.separator)) {
       for (const ChannelHead::Channel& channel : channels->channels) {
-        layout_.columns.push_back({.name = "t", .unit = channels->time_unit});
+        layout_.columns.push_back({.name = "t", .unit = channels->time_unit, .is_time = true});
         layout_.columns.push_back({.name = channel.name, .unit = channel.unit});
       }
       layout_.notes.insert(layout_.notes.end(), channels->notes.begin(), channels->notes.end());

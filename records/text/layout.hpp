@@ -25,6 +25,7 @@ struct TextLayout {
     std::string name{};  ///< empty where the file has none
     std::string unit{};
     std::size_t cell = 0;  ///< in the row of names
+    bool is_time = false;  ///< by the form of the head; no signal, whatever it is called
   };
   std::vector<Name> columns{};           ///< as many as cells; none where there are no names
   std::optional<CountedTime> counted{};  ///< what the first column counts

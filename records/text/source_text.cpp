@@ -38,8 +38,10 @@ Place SourceText::place_of(const Line& line, const Cell& cell) const {
 
 Place SourceText::place(std::string_view column, std::size_t row) const {
   const Line line = line_at(rows[row]);
-  const auto named =
-      std::ranges::find_if(names, [&](const std::string& name) { return equal_ignoring_case(name, column); });
+  const auto written = std::ranges::find(names, column);
+  const auto named = written != names.end() ? written : std::ranges::find_if(names, [&](const std::string& name) {
+    return equal_ignoring_case(name, column);
+  });
   std::vector<Cell> cells;
   cut_line(line.text, separator, cells);
   const auto at = static_cast<std::size_t>(named - names.begin());

@@ -24,7 +24,7 @@ struct SourceText {
   std::string file{};
   std::string text{};
   char separator = ',';
-  std::vector<std::string> names{};  ///< of the columns, as the record has them
+  std::vector<std::string> names{};  ///< of the columns, as the record has them; empty of its time
   std::vector<std::size_t> rows{};   ///< the offsets of the rows of numbers
 
   [[nodiscard]] Line line_at(std::size_t offset) const;

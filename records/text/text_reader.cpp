@@ -98,6 +98,7 @@ class Reader {
       if (c < layout_.columns.size()) {
         column.name = layout_.columns[c].name;
         column.unit = layout_.columns[c].unit;
+        column.is_time = layout_.columns[c].is_time;
         const std::size_t cell = layout_.columns[c].cell;
         column.place = cell < cells.size() ? source_->place_of(line, cells[cell]) : table_.place;
       }

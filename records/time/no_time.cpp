@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "records/time/time_candidates.hpp"
 #include "records/time/time_unit.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -17,14 +17,7 @@
 namespace hysteron::records {
 
 void refuse_without_time(const Table& table) {
-  std::vector<std::size_t> rising;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    const std::vector<double>& values = table.columns[i].values;
-    const bool rising_values = std::ranges::adjacent_find(values, std::greater_equal{}) == values.end();
-    if (table.columns[i].kind == CellKind::Number && !table.columns[i].fault && rising_values) {
-      rising.push_back(i);
-    }
-  }
+  const std::vector<std::size_t> rising = rising_columns(table);
   const auto counts_rows = [&](std::size_t i) {
     const std::vector<double>& values = table.columns[i].values;
     return is_one_of(table.columns[i].name, {"sample", "samples", "index", "row", "count", "counter", "scan", "number",

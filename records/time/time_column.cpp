@@ -14,12 +14,14 @@
 #include "records/time/counter.hpp"
 #include "records/time/no_time.hpp"
 #include "records/time/packed_clock.hpp"
+#include "records/time/time_candidates.hpp"
 #include "records/time/time_unit.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "support/option_words.hpp"
 #include "support/rounded_text.hpp"
+#include "support/time_heading.hpp"
 
 namespace hysteron::records {
 namespace {
@@ -28,36 +30,8 @@ constexpr std::int64_t seconds_a_day = 86400;
 /// Beyond it a number of seconds, or of any unit, is no time since the record began but a date.
 constexpr double longest_record = 1e8;
 
-bool is_clock_kind(CellKind kind) {
-  return kind == CellKind::DateTime || kind == CellKind::Date || kind == CellKind::Clock;
-}
-
 double raw_value(const Stamp& stamp) {
   return static_cast<double>(stamp.whole) + stamp.fraction;
-}
-
-/// Of a signal at a rate of its own the rows end earlier: how many there are; all where a cell is missing in between.
-std::size_t own_rows(const TableColumn& column, std::size_t rows) {
-  const std::size_t missing = column.missing.size();
-  return column.is_gappy && missing > 0 && column.missing.front() == rows - missing ? rows - missing : rows;
-}
-
-/// Whether the times of a column go up from row to row; of days, whether they never go back.
-bool rises(const TableColumn& column) {
-  const std::size_t rows = own_rows(column, column.stamps.size());
-  if (rows < 2 || (column.fault && rows == column.stamps.size())) {
-    return false;
-  }
-  const bool may_rest = column.kind == CellKind::Date || column.kind == CellKind::Clock;
-  for (std::size_t k = 1; k < rows; ++k) {
-    const Stamp& before = column.stamps[k - 1];
-    const Stamp& now = column.stamps[k];
-    const double step = static_cast<double>(now.whole - before.whole) + (now.fraction - before.fraction);
-    if (!(may_rest ? step >= 0.0 || step < -43200.0 : step > 0.0)) {
-      return false;
-    }
-  }
-  return true;
 }
 
 bool same_times(const TableColumn& a, const TableColumn& b) {
@@ -65,73 +39,6 @@ bool same_times(const TableColumn& a, const TableColumn& b) {
          std::ranges::equal(a.stamps, b.stamps, [](const Stamp& x, const Stamp& y) {
            return x.whole == y.whole && x.fraction == y.fraction;
          });
-}
-
-/// t_u beside u, u_time beside u: the times of one signal. So are t1 and t2 where each has one signal behind it.
-bool is_time_of_signal(const Table& table, std::size_t index) {
-  return index + 1 < table.columns.size() && is_time_of(table.columns[index].name, table.columns[index + 1].name);
-}
-
-/// The first column in a unit of time, and each further one of the same name: the X [s] of a drive's oscilloscope.
-bool is_time_by_unit(const Table& table, std::size_t index) {
-  const TableColumn& column = table.columns[index];
-  const TableColumn& first = table.columns.front();
-  return column.is_named && time_unit(column.unit) && time_unit(first.unit) &&
-         (index == 0 || equal_ignoring_case(column.name, first.name));
-}
-
-bool has_numbered_times(const Table& table) {
-  const std::size_t count = table.columns.size();
-  if (count < 4 || count % 2 != 0) {
-    return false;
-  }
-  for (std::size_t i = 0; i < count; i += 2) {
-    const std::string_view base = without_number(table.columns[i].name);
-    if (!time_name(base) || !equal_ignoring_case(base, without_number(table.columns[0].name)) ||
-        time_name(table.columns[i + 1].name)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-std::vector<std::string> names_of(const Table& table, const std::vector<std::size_t>& columns) {
-  std::vector<std::string> names;
-  names.reserve(columns.size());
-  for (const std::size_t i : columns) {
-    names.push_back(table.columns[i].name);
-  }
-  return names;
-}
-
-std::vector<std::size_t> candidates(const Table& table) {
-  std::vector<std::size_t> result;
-  const bool numbered = has_numbered_times(table);
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    const TableColumn& column = table.columns[i];
-    if (!column.has_values || column.is_part_of_time) {
-      continue;
-    }
-    if ((numbered && i % 2 == 0) || is_clock_kind(column.kind) || (column.is_named && time_name(column.name)) ||
-        is_time_of_signal(table, i) || is_time_by_unit(table, i)) {
-      result.push_back(i);
-    }
-  }
-  // Beside a column that says time, a T is a temperature or a torque.
-  const auto is_capital = [&](std::size_t i) { return table.columns[i].name == "T" && table.columns[i].unit.empty(); };
-  if (std::ranges::any_of(result, [&](std::size_t i) {
-        return table.columns[i].name.size() > 2 || is_clock_kind(table.columns[i].kind);
-      })) {
-    std::erase_if(result, is_capital);
-  }
-  // Where none says time: the first, if it rises and its name is a unit below the second, or ends so: ms, tick_us.
-  const TableColumn& first = table.columns.front();
-  const auto unit = unit_in_name(first.name);
-  if (result.empty() && first.has_values && first.is_named && first.kind == CellKind::Number && !first.fault && unit &&
-      unit->under > 1 && rises(first)) {
-    result.push_back(0);
-  }
-  return result;
 }
 
 /// The date and the time of day that make one time.
@@ -358,7 +265,7 @@ Times times_of(const Table& table, const ReadOptions& options) {
     for (std::size_t k = 0; k < table.rows; ++k) {
       result.seconds.push_back(static_cast<double>(k) / *options.rate);
     }
-    if (const auto left = candidates(table); !left.empty()) {
+    if (const auto left = time_candidates(table, options); !left.empty()) {
       result.notes.push_back(
           fmt::format("the time is counted by --rate; not used: {}", fmt::join(names_of(table, left), ", ")));
       result.used = left;
@@ -377,7 +284,7 @@ Times times_of(const Table& table, const ReadOptions& options) {
     }
     found = {stated.front()};
   } else {
-    found = candidates(table);
+    found = time_candidates(table, options);
     if (const auto pair = date_and_clock(table, found)) {
       date = pair->first;
       std::erase(found, *date);
@@ -406,8 +313,8 @@ Times times_of(const Table& table, const ReadOptions& options) {
   if (found.empty()) {
     refuse_without_time(table);
   }
-  // Of several: what repeats the first is the same time; a t in seconds is the time of this house; else each may be
-  // the time of the signal behind it.
+  // Of several: what repeats the first is the same time; a t in seconds is the time of this house, and beside a
+  // signal T the time; else each may be the time of the signal behind it.
   if (found.size() > 1) {
     std::vector<std::size_t> others;
     for (const std::size_t i : found) {
@@ -417,7 +324,13 @@ Times times_of(const Table& table, const ReadOptions& options) {
         others.push_back(i);
       }
     }
-    const auto exact = std::ranges::find_if(found, [&](std::size_t i) { return table.columns[i].name == "t"; });
+    const auto called = [&](std::string_view name) {
+      return std::ranges::find_if(found, [&](std::size_t i) { return table.columns[i].name == name; });
+    };
+    const bool beside_t = options.signal_t || std::ranges::any_of(table.columns, [](const TableColumn& one) {
+                            return is_called_t(one.name);
+                          });
+    const auto exact = called("t") == found.end() && beside_t ? called("time") : called("t");
     const auto before_signal = [&](std::size_t i) {
       return i + 1 < table.columns.size() && std::ranges::find(found, i + 1) == found.end();
     };
@@ -458,6 +371,7 @@ Times times_of(const Table& table, const ReadOptions& options) {
   Found times = times_of_column(table, index, date, options);
   result.seconds = std::move(times.seconds);
   result.grid = times.grid;
+  result.index = index;
   result.column = table.columns[index].name;
   if (result.column != "t" || !times.note.empty()) {
     result.notes.push_back(fmt::format("the time is column {}{}", result.column, times.note));

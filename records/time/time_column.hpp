@@ -1,7 +1,9 @@
 // Which column of a table is the time, and what it is in seconds.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,9 +15,10 @@ namespace hysteron::records {
 
 struct Times {
   std::vector<double> seconds{};
-  TimeGrid grid{};                  ///< in seconds
-  std::vector<std::size_t> used{};  ///< the columns that the time is made of, or that repeat it
-  std::string column{};             ///< the name of the first of them; empty where the rate is stated
+  TimeGrid grid{};                     ///< in seconds
+  std::vector<std::size_t> used{};     ///< the columns that the time is made of, or that repeat it
+  std::optional<std::size_t> index{};  ///< the first of them; none where the rate is stated
+  std::string column{};                ///< its name
   std::vector<std::string> notes{};
   /// Where each signal has times of its own: those of the column behind each, by column; else empty.
   struct Own {
@@ -23,6 +26,10 @@ struct Times {
     std::vector<double> seconds{};
   };
   std::vector<Own> own{};
+
+  [[nodiscard]] bool uses(std::size_t column_index) const {
+    return std::ranges::find(used, column_index) != used.end();
+  }
 };
 
 /// Finds it: the column that is stated; else the one that is called so, or holds dates or times of day, and rises.

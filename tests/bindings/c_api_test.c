@@ -97,6 +97,32 @@ static void steps_and_runs_give_the_same(void) {
   hysteron_record_free(out);
 }
 
+/* A T among the outputs of a diagram: its records call their time otherwise. */
+static void a_signal_called_t_is_a_signal(void) {
+  static const char text[] =
+      "FUNCTION_BLOCK OVEN (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT T : LREAL; END_VAR\n"
+      "T := 2.0 * U;\nEND_FUNCTION_BLOCK\n";
+  const char* names[3] = {"t", "U", "T"};
+  const double values[9] = {0.0, 0.001, 0.002, 1.0, 2.0, 4.0, 7.0, 7.0, 9.0};
+  hysteron_messages* messages = NULL;
+  hysteron_diagram* diagram = hysteron_compile_text(text, NULL, &messages);
+  hysteron_record* record = hysteron_record_new(3, 3, names, NULL, values, diagram, NULL, NULL);
+  hysteron_record* out = hysteron_run(diagram, record, NULL, NULL);
+  CHECK(messages == NULL);
+  CHECK(hysteron_record_columns(record) == 2 && strcmp(hysteron_record_name(record, 1), "T") == 0);
+  CHECK(strcmp(hysteron_record_time_name(record), "time") == 0 && hysteron_record_time(record)[2] == 0.002);
+  CHECK(strcmp(hysteron_record_time_name(out), "time") == 0);
+  CHECK(strcmp(hysteron_record_name(out, 0), "T") == 0 && hysteron_record_values(out, 0)[2] == 8.0);
+  hysteron_record_free(out);
+  hysteron_record_free(record);
+  CHECK(hysteron_record_new(2, 3, names, NULL, values, diagram, NULL, &messages) == NULL && code_of(messages) == 514);
+  record = hysteron_record_new(2, 3, names, NULL, values, NULL, NULL, NULL);
+  CHECK(strcmp(hysteron_record_time_name(record), "t") == 0 && hysteron_record_columns(record) == 1);
+  CHECK(hysteron_record_time_name(NULL) == NULL);
+  hysteron_record_free(record);
+  hysteron_diagram_free(diagram);
+}
+
 static void an_input_of_another_type_makes_no_step(void) {
   hysteron_diagram* diagram = plant();
   hysteron_machine* machine = hysteron_machine_new(diagram, 0.0, NULL, NULL);
@@ -245,6 +271,7 @@ static void null_is_refused_or_does_nothing(void) {
 int main(void) {
   a_diagram_says_what_it_is();
   steps_and_runs_give_the_same();
+  a_signal_called_t_is_a_signal();
   an_input_of_another_type_makes_no_step();
   errors_have_code_place_and_mend();
   a_goal_is_tuned_without_a_record();

@@ -131,23 +131,6 @@ TEST_F(Run, TracesVariablesAndWhatIsInsideNestedBlocks) {
   EXPECT_THAT(refusal(std::string(go) + " --trace PLANT.HALB"), HasSubstr("PLANT.HALF?"));
 }
 
-TEST_F(Run, RefusesPortsThatNoRecordCanHold) {
-  bench.write("plant.st",
-              "FUNCTION_BLOCK P (* @ts 1ms *) VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT t : LREAL; END_VAR\n"
-              "t := X;\nEND_FUNCTION_BLOCK\n");
-  EXPECT_THAT(refusal(), StartsWith("HY216 error: plant.st:1:72: 't' is also the name of the time in a record\n"));
-  const auto checked = bench.shell("hysteron check plant.st");
-  EXPECT_EQ(checked.code, 0);
-  EXPECT_THAT(checked.out, StartsWith("HY216 warning: "));
-  // Inside another block no record meets it.
-  bench.write("plant.st",
-              "FUNCTION_BLOCK IN_IT VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT t : LREAL; END_VAR\n"
-              "t := X;\nEND_FUNCTION_BLOCK\n"
-              "FUNCTION_BLOCK P (* @ts 1ms *) VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"
-              "VAR A : IN_IT; END_VAR\nA(X := X);\nY := A.t;\nEND_FUNCTION_BLOCK\n");
-  EXPECT_EQ(bench.shell(std::string(go)).code, 0);
-}
-
 TEST_F(Run, SummaryComparesWithRecordedOutputs) {
   bench.write("log.csv", "t,x,y,temperature\n0,1.0,0.002,20\n0.001,1.0,0.003,20\n");
   const auto outcome = bench.shell(std::string(go) + " --summary");

@@ -46,6 +46,7 @@ _FUNCTIONS = {
     "record_rows": (c_size_t, [c_void_p]),
     "record_sample_time": (c_double, [c_void_p]),
     "record_time": (_NUMBERS, [c_void_p]),
+    "record_time_name": (c_char_p, [c_void_p]),
     "record_columns": (c_size_t, [c_void_p]),
     "record_name": (c_char_p, [c_void_p, c_size_t]),
     "record_unit": (c_char_p, [c_void_p, c_size_t]),

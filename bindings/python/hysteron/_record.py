@@ -21,7 +21,8 @@ def _read_only(pointer, count, owner):
 
 
 class Record(Mapping):
-    """Columns by name, without regard to case; `t` is the time in seconds. The arrays are read-only: `copy()` them."""
+    """Columns by name, without regard to case; `t` is the time in seconds, or `time` where the diagram has a signal T.
+    The arrays are read-only: `copy()` them."""
 
     def __init__(self, pointer, messages=()):
         self._handle = Handle(pointer, "record_free")
@@ -30,8 +31,9 @@ class Record(Mapping):
         #: What was understood of the file that it does not say outright.
         self.notes = notes_of(messages)
         self.units = {}
-        self._columns = {"t": _read_only(library.hysteron_record_time(pointer), rows, self._handle)}
-        self.units["t"] = "s"
+        self._time = library.hysteron_record_time_name(pointer).decode()
+        self._columns = {self._time: _read_only(library.hysteron_record_time(pointer), rows, self._handle)}
+        self.units[self._time] = "s"
         for i in range(library.hysteron_record_columns(pointer)):
             name = library.hysteron_record_name(pointer, i).decode()
             self._columns[name] = _read_only(library.hysteron_record_values(pointer, i), rows, self._handle)
@@ -51,7 +53,7 @@ class Record(Mapping):
         return len(self._columns)
 
     def __repr__(self):
-        return f"<Record of {len(self['t'])} rows every {self.sample_time:g} s: {', '.join(self._columns)}>"
+        return f"<Record of {len(self[self._time])} rows every {self.sample_time:g} s: {', '.join(self._columns)}>"
 
 
 def read_options(columns, given):
@@ -74,10 +76,18 @@ def read_record(path, *, diagram=None, columns=None, **given):
     return Record(pointer, messages)
 
 
+def _has_time(arrays, diagram):
+    """Whether one of the arrays may be the time, by its name. Beside a port T, one that does not rise is that signal."""
+    named = {name: array for name, array in arrays.items() if name.lower() in ("t", "time")}
+    has_port = diagram is not None and any(name.lower() == "t" for name in [*diagram.inputs, *diagram.outputs])
+    return any(not has_port or name.lower() == "time" or bool(numpy.all(numpy.diff(array) > 0.0))
+               for name, array in named.items())
+
+
 def as_record(given, diagram=None, *, units=None, columns=None, **options_given):
     """A record as it is; arrays by name as a record; else the name of a file.
 
-    Of arrays, one is the time in seconds, `t`, by the rules of a file; without one, `rate` states the rows per second,
+    Of arrays, one is the time in seconds, `t`, or `time` beside a signal T, by the rules of a file; without one, `rate` states the rows per second,
     or else the diagram's sample time counts.
     """
     if isinstance(given, Record):
@@ -101,8 +111,8 @@ def as_record(given, diagram=None, *, units=None, columns=None, **options_given)
                     ", ".join(f"{name} has {len(array)}" for name, array in arrays.items()) + ".",
                     "give each as many numbers as there are rows.")
     count, rows = len(arrays), lengths.pop()
-    has_time = "time" in options_given or "rate" in options_given or any(name.lower() in ("t", "time") for name in arrays)
-    if not has_time and diagram is not None and diagram.sample_time:
+    states_time = "time" in options_given or "rate" in options_given
+    if not states_time and not _has_time(arrays, diagram) and diagram is not None and diagram.sample_time:
         options_given["rate"] = f"{diagram.sample_time!r} s"
     given_units = {str(name).lower(): unit for name, unit in (units or {}).items()}
     unknown = set(given_units) - {name.lower() for name in arrays}

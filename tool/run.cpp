@@ -147,7 +147,7 @@ int run_command(const RunOptions& options, Console& console) {
   const std::string log = read_text_file(options.input == "-" ? "/dev/stdin" : options.input);
   console.sources().put(options.input, log);
   const RecordOptions reading = with_settings_of(options.diagram.parameters, options.record);
-  records::Record record = records::parse_record(options.input, log, read_options(reading, &program));
+  records::Record record = records::parse_record(options.input, log, drive_options(reading, program));
   if (options.batch.wanted()) {
     return run_batch(options.batch, std::move(program), record,
                      {.output = options.output, .float32 = options.diagram.float32}, diagnostics, console);

@@ -128,9 +128,7 @@ class CasePlan {
     Drive& drive = planned_.drive;
     if (!test().csv.text.empty()) {
       record_ = read_named(test().csv, folder_, [&](const std::string& path) {
-        // Its inputs alone are taken: a T among the outputs leaves a t no second reading.
-        const bool has_t = find_port(graph().inputs, "T") != nullptr;
-        return records::read_record(path, read_options({}, has_t ? &planned_.program : nullptr));
+        return records::read_record(path, drive_options({}, planned_.program));
       });
       convert_units(*record_, planned_.program, diagnostics_);
       for (const std::string& note : record_->notes()) {

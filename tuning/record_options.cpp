@@ -249,6 +249,14 @@ records::ReadOptions read_options(const RecordOptions& options, const Program* p
   return result;
 }
 
+records::ReadOptions drive_options(const RecordOptions& options, const Program& program) {
+  records::ReadOptions result = read_options(options, &program);
+  if (find_port(program.graph.inputs, "T") == nullptr) {
+    result.signal_t.reset();
+  }
+  return result;
+}
+
 std::vector<std::string> what_was_read(const records::Record& record, const Program& program, bool tell_unused,
                                        std::string_view used) {
   std::vector<std::string> notes = record.notes();

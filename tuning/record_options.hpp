@@ -50,6 +50,9 @@ auto texts_of(Options& options) {
 /// sample time, its BOOL, INT, DINT and WORD are held, and a port T is told from the time.
 [[nodiscard]] records::ReadOptions read_options(const RecordOptions& options, const Program* program = nullptr);
 
+/// The same for a record of which the inputs alone are taken: a T among the outputs leaves a t no second reading.
+[[nodiscard]] records::ReadOptions drive_options(const RecordOptions& options, const Program& program);
+
 /// What was understood of a record, a sentence each without capital and point: notes of the reader, inputs that have no
 /// column and keep their defaults, and, with `tell_unused`, the columns that the diagram has no port for, but one that
 /// is used all the same.

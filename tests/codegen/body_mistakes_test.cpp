@@ -124,6 +124,19 @@ std::string told(const std::string& text) {
   return found.all().empty() ? std::string() : found.all().front().cause;
 }
 
+TEST(BodyMistakes, ACaseHasEachValueOnceAndNoneThatItsSelectorNeverIs) {
+  const auto arms = [](const std::string& text) { return with_ports("CASE X OF " + text + " END_CASE;"); };
+  EXPECT_EQ(told(arms("1: Y := 1; 1: Y := 2;")), "the value 1 of this CASE stands here a second time");
+  EXPECT_EQ(told(arms("-1: Y := 1; -5..0: Y := 2;")), "the value -1 of this CASE stands here a second time");
+  EXPECT_EQ(told(arms("0..5: Y := 1; 6, 3: Y := 2;")), "the value 3 of this CASE stands here a second time");
+  EXPECT_EQ(told(arms("9..7: Y := 1;")), "the range 9..7 is empty");
+  EXPECT_EQ(told(arms("70000: Y := 1;")), "the selector is INT, which never is 70000");
+  EXPECT_EQ(told(arms("1, 2: Y := 1; 3..5: Y := 2; -2..0: Y := 3;")), "");
+  // In a loop, once.
+  EXPECT_EQ(faults_of(with_ports("FOR D := 1 TO 3 DO CASE X OF 1: Y := 1; 1: Y := X / 0; END_CASE; END_FOR;")),
+            (Faults{fmt::format("{}:3", error::refused_in_body), fmt::format("{}:3", error::other_meaning_elsewhere)}));
+}
+
 TEST(BodyMistakes, AnInitialValueLiesWithinItsType) {
   const auto of = [](const std::string& variable) {
     return told(with_ports("").replace(with_ports("").rfind("END_VAR\n"), 0, "END_VAR VAR " + variable + "; "));

@@ -124,6 +124,31 @@ std::string told(const std::string& text) {
   return found.all().empty() ? std::string() : found.all().front().cause;
 }
 
+TEST(BodyMistakes, WhatIsDeclaredTwiceIsTold) {
+  const auto block = [](const std::string& before, const std::string& locals) {
+    return before + "\nFUNCTION_BLOCK F (* @ts 10ms @body *) VAR_INPUT X : INT; END_VAR VAR_OUTPUT Y : INT; END_VAR\n" +
+           locals + "\nY := X;\nEND_FUNCTION_BLOCK";
+  };
+  for (const char* const locals :
+       {"VAR N : INT; n : INT := 100; END_VAR", "VAR Y : REAL; END_VAR",
+        "VAR N : INT; END_VAR VAR_TEMP N : BOOL; END_VAR", "VAR CONSTANT X : INT := 3; END_VAR",
+        "VAR S : STRUCT A : INT; A : REAL; END_STRUCT; END_VAR"}) {
+    EXPECT_EQ(faults_of(block("", locals)), Faults{fmt::format("{}:3", error::duplicate_name)}) << locals;
+  }
+  const std::string function = "FUNCTION G : REAL VAR_INPUT A : REAL; END_VAR G := A; END_FUNCTION ";
+  for (const std::string& before :
+       {std::string("TYPE P : INT; END_TYPE TYPE P : REAL; END_TYPE"), function + function,
+        std::string("TYPE E : (ONE, TWO, ONE); END_TYPE"), "TYPE G : INT; END_TYPE " + function,
+        std::string("FUNCTION G : REAL VAR_INPUT G : REAL; END_VAR G := 1.0; END_FUNCTION"),
+        std::string("VAR_GLOBAL CONSTANT C : INT := 3; END_VAR VAR_GLOBAL CONSTANT C : INT := 4; END_VAR")}) {
+    EXPECT_EQ(faults_of(block(before, "")), Faults{fmt::format("{}:1", error::duplicate_name)}) << before;
+  }
+  // A variable of the block hides a global one, and two enumerations may have a value of one name.
+  EXPECT_EQ(faults_of(block("VAR_GLOBAL CONSTANT C : INT := 3; END_VAR TYPE A : (ONE); B : (ONE); END_TYPE",
+                            "VAR C : INT; END_VAR")),
+            Faults{});
+}
+
 TEST(BodyMistakes, ACaseHasEachValueOnceAndNoneThatItsSelectorNeverIs) {
   const auto arms = [](const std::string& text) { return with_ports("CASE X OF " + text + " END_CASE;"); };
   EXPECT_EQ(told(arms("1: Y := 1; 1: Y := 2;")), "the value 1 of this CASE stands here a second time");
@@ -147,6 +172,22 @@ TEST(BodyMistakes, AnInitialValueLiesWithinItsType) {
   EXPECT_EQ(of("U : REAL := 1.0e60"), "U is REAL, which does not hold 1e+60");
   EXPECT_EQ(of("U : REAL := 3.0e38"), "");
   EXPECT_NE(told(with_ports("W := -1;")), "");
+}
+
+TEST(BodyMistakes, WordsOfTheLanguageAndOfOthersAreNamed) {
+  const auto of = [](const std::string& variable) {
+    return told(with_ports("").replace(with_ports("").rfind("END_VAR\n"), 0, "END_VAR VAR " + variable + "; "));
+  };
+  for (const char* const word : {"aT", "by", "TO", "IF"}) {
+    EXPECT_EQ(of(std::string(word) + " : BOOL"),
+              fmt::format("{} is a keyword of the language and cannot be the name of a variable.", word));
+  }
+  EXPECT_EQ(told(with_ports("GOTO AWAY;")), "A body has no GOTO.");
+  EXPECT_EQ(told("FUNCTION_BLOCK F (* @body *) VAR_STAT N : INT; END_VAR VAR_OUTPUT Y : INT; END_VAR Y := N; "
+                 "END_FUNCTION_BLOCK"),
+            "VAR_STAT is shared by all instances of the block.");
+  EXPECT_EQ(one_result("D := SEL(B AND_THEN X > 2, 1, 2);"), 2);
+  EXPECT_EQ(one_result("D := SEL(X > 5 OR_ELSE NOT B AND_THEN Q, 1, 2);"), 1);
 }
 
 }  // namespace

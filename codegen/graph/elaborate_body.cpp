@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -13,8 +14,12 @@ namespace hysteron {
 
 void Elaborator::elaborate_body(const Instance& instance) {
   const Definition& definition = *instance.definition;
+  std::set<std::uint32_t> warned;  // in a loop, each place once
   const auto report = [&](int number, Span span, std::string cause, std::string mend) {
     if (number == error::other_meaning_elsewhere) {
+      if (!warned.insert(span.offset).second) {
+        return;
+      }
       diagnostics_.warning(number, source_.place(span), std::move(cause), std::move(mend));
       return;
     }

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
+#include <span>
+#include <string>
 #include <utility>
 
 #include "codegen/language/body_parser.hpp"
@@ -24,9 +27,39 @@ bool is_whole_type(std::string_view name) {
 
 }  // namespace
 
+/// Upper and lower case do not differ.
+void BodyParser::declared_once(const std::vector<body::Declaration>& list) {
+  std::set<std::string> names;
+  for (const body::Declaration& one : list) {
+    if (!names.insert(upper(one.name.text)).second) {
+      twice(one.name);
+    }
+  }
+}
+
+void BodyParser::twice(const Name& name) {
+  reporter_.error(error::duplicate_name, name.span, fmt::format("'{}' is declared twice.", name.text),
+                  "Rename one of the two, or remove it; upper and lower case do not differ.");
+}
+
+/// Of a TYPE and of a FUNCTION: both are found by name.
+void BodyParser::defined_once(const Name& name) {
+  const bool known =
+      std::ranges::any_of(library_.types, [&](const auto& one) { return same_name(one.name.text, name.text); }) ||
+      std::ranges::any_of(library_.units,
+                          [&](const auto& one) { return one.function && same_name(one.name.text, name.text); });
+  if (known && !name.text.empty()) {
+    twice(name);
+  }
+}
+
 bool BodyParser::starts_section() const {
   return now().keyword == Keyword::Var || now().keyword == Keyword::VarInput || now().keyword == Keyword::VarOutput ||
-         now().keyword == Keyword::RefusedSection;
+         now().keyword == Keyword::RefusedSection || is_shared_section();
+}
+
+bool BodyParser::is_shared_section() const {
+  return is(Symbol::Identifier) && same_name(word(now()), "VAR_STAT");
 }
 
 void BodyParser::sections(body::Unit& unit, FunctionBlock* block, std::size_t index,
@@ -43,6 +76,10 @@ void BodyParser::section(body::Unit& unit, FunctionBlock* block, std::size_t ind
               : is("VAR_IN_OUT") ? Role::InOut
               : is("VAR_TEMP")   ? Role::Temporary
                                  : Role::Local;
+  if (is_shared_section()) {
+    reporter_.error(error::refused_section, span_of(now()), "VAR_STAT is shared by all instances of the block.",
+                    "Write VAR, which each instance has by itself, or put it into VAR_GLOBAL of this file.");
+  }
   const bool external = is("VAR_EXTERNAL");
   auto& list = external ? unit.externals : unit.declarations;
   if (now().keyword == Keyword::RefusedSection && role == Role::Local && !external) {
@@ -100,7 +137,15 @@ void BodyParser::declaration_or_nothing(Role role, std::vector<body::Declaration
 bool BodyParser::declaration(Role role, std::vector<body::Declaration>& list) {
   const auto first = list.size();
   do {
-    if (!name(list.emplace_back().name, "the name of a variable")) {
+    auto& declared = list.emplace_back().name;
+    const bool keyword = is(Symbol::Keyword) && (ahead().symbol == Symbol::Colon || ahead().symbol == Symbol::Comma);
+    if (keyword) {
+      reporter_.error(error::keyword_as_name, span_of(now()),
+                      fmt::format("{} is a keyword of the language and cannot be the name of a variable.", word(now())),
+                      "Choose another name.");
+      declared = {word(now()), span_of(now())};
+      advance();
+    } else if (!name(declared, "the name of a variable")) {
       return false;
     }
   } while (accept(Symbol::Comma));
@@ -163,6 +208,12 @@ bool BodyParser::enumeration(body::TypeSpec& spec) {
     if (!name(value, "the name of a value")) {
       return false;
     }
+    for (const auto& before : std::span(spec.values).first(spec.values.size() - 1)) {
+      if (same_name(before.first.text, value.text)) {
+        twice(value);
+        break;
+      }
+    }
     if (accept(Symbol::Assign) && (number = expression()) == no_expression) {
       return false;
     }
@@ -183,6 +234,7 @@ bool BodyParser::structure(body::TypeSpec& spec) {
       return false;
     }
   }
+  declared_once(spec.fields);
   return expect("END_STRUCT");
 }
 
@@ -282,6 +334,7 @@ void BodyParser::globals() {
   while (!is("END_VAR") && !is(Symbol::End)) {
     declaration_or_nothing(role, library_.globals);
   }
+  declared_once(library_.globals);
   end_section();
 }
 
@@ -292,6 +345,7 @@ void BodyParser::types() {
     if (name(one.name, "the name of a type") && expect(Symbol::Colon, "`:` and a type") && type(one.type) &&
         (!accept(Symbol::Assign) || initial(one.initial))) {
       accept(Symbol::Semicolon);
+      defined_once(one.name);
       library_.types.push_back(std::move(one));
       continue;
     }

@@ -47,11 +47,19 @@ ExpressionId BodyParser::make(body::Expression expression) {
   return static_cast<ExpressionId>(library_.expressions.size() - 1);
 }
 
+/// AND_THEN and OR_ELSE are AND and OR: an operand changes nothing.
+BinarySign BodyParser::sign_of(const Token& token) const {
+  const bool word_sign = token.symbol == Symbol::Identifier;
+  return word_sign && same_name(word(token), "AND_THEN")  ? BinarySign{Operator::And, 2}
+         : word_sign && same_name(word(token), "OR_ELSE") ? BinarySign{Operator::Or, 0}
+                                                          : binary_sign(token);
+}
+
 ExpressionId BodyParser::binary(int weakest) {
   ExpressionId left = unary();
   int chain = 0;
   while (left != no_expression) {
-    const BinarySign sign = binary_sign(now());
+    const BinarySign sign = sign_of(now());
     if (sign.strength < weakest || sign.strength < 0) {
       return left;
     }

@@ -94,6 +94,13 @@ body::Unit BodyParser::function() {
   sections(unit, nullptr, 0, nullptr);
   statements(unit.statements);
   finish(unit, "END_FUNCTION");
+  defined_once(unit.name);
+  declared_once(unit.declarations);
+  for (const body::Declaration& one : unit.declarations) {
+    if (same_name(one.name.text, unit.name.text)) {  // which is what it gives
+      twice(one.name);
+    }
+  }
   unit.span = since(begin);
   return unit;
 }
@@ -124,6 +131,7 @@ body::Unit BodyParser::block(FunctionBlock& block, std::size_t index, std::vecto
   sections(unit, &block, index, &declarations);
   statements(unit.statements);
   finish(unit, "END_FUNCTION_BLOCK");
+  declared_once(unit.declarations);
   unit.span = since(begin);
   block.span = unit.span;
   return unit;
@@ -379,6 +387,9 @@ bool BodyParser::named(body::Statement& statement) {
     auto& call = statement.node.emplace<body::Invoke>();
     call.instance = std::move(target);
     return arguments(call.arguments) && end_of_statement();
+  }
+  if (is(Symbol::Identifier) && same_name(target.name.text, "GOTO")) {
+    return refuse(target.name.span, "A body has no GOTO.", "Write IF around what it passes over, or a loop with EXIT.");
   }
   if (is(Symbol::Identifier) && (same_name(word(now()), "REF") || same_name(word(now()), "S"))) {
     return refuse(span_of(now()), fmt::format("`{}=` is no assignment of the standard.", word(now())), "Write :=.");

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "codegen/language/annotation.hpp"
+#include "codegen/language/binary_sign.hpp"
 #include "codegen/language/body.hpp"
 #include "codegen/language/lexer.hpp"
 #include "codegen/language/reporter.hpp"
@@ -46,6 +47,10 @@ class BodyParser {
   bool initial(body::Initial& value);
   bool element(body::Initial& list);
   [[nodiscard]] bool starts_section() const;
+  [[nodiscard]] bool is_shared_section() const;
+  void declared_once(const std::vector<body::Declaration>& list);
+  void defined_once(const Name& name);
+  void twice(const Name& name);
 
   // Statements: body_parser.cpp.
   void statements(body::Statements& list);
@@ -68,6 +73,7 @@ class BodyParser {
   // Expressions: body_expressions.cpp. no_expression says that an error was reported.
   ExpressionId expression() { return binary(0); }
   ExpressionId binary(int weakest);
+  [[nodiscard]] BinarySign sign_of(const Token& token) const;
   ExpressionId unary();
   ExpressionId primary();
   ExpressionId number();

@@ -161,6 +161,7 @@ class Body {
                 const language::body::Statements& otherwise);
   void arms(const language::body::Case& node, const Value& selector, std::size_t at);
   Value selected(const language::body::Arm& arm, const Value& selector);
+  void check_labels(const language::body::Case& node, const Value& selector);
   State merged(const Value& condition, State yes, State no);
   Value stopped();
 
@@ -239,6 +240,7 @@ class Body {
   std::map<const language::body::Unit*, Written> written_{};
   std::vector<std::pair<std::uint32_t, language::Span>> open_pins_{};  ///< not given before their block was called
   std::set<const language::body::Loop*> endless_{};                    ///< that were told
+  std::set<const language::body::Case*> cases_{};                      ///< whose labels were checked
   std::vector<Kept> kept_{};
   bool lacks_sample_time_ = false;                 ///< which was told
   std::optional<Value> clock_{};                   ///< what TIME() gives in this step

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "codegen/graph/body/body.hpp"
 #include "codegen/language/refused_types.hpp"
@@ -151,6 +152,7 @@ std::optional<Value> Body::of_number(const std::string& name, const std::vector<
   const auto result = [&](Op op, std::initializer_list<Value> operands, Plain type) {
     Value number = computer_.operation(op, operands, type);
     number.wide = true;
+    number.untyped = Untyped({values[0]}).as(type);
     return type == Plain::Real ? computer_.fit(number, type) : number;
   };
   for (const NumberFunction& one : number_functions) {
@@ -185,7 +187,9 @@ std::optional<Value> Body::of_number(const std::string& name, const std::vector<
         size.low = std::max<std::int64_t>({0, kept.low, -kept.high});
         size.high = std::max(kept.high, -kept.low);
       }
-      return computer_.fit(size, x.type);
+      size = computer_.fit(size, x.type);
+      size.untyped = x.untyped;
+      return size;
     }
     const Value number = as_number(x);
     return number.valid() ? result(Op::Abs, {number}, number.type) : number;
@@ -202,9 +206,9 @@ std::optional<Value> Body::chosen(const std::string& name, std::vector<Value>& v
     return std::nullopt;
   }
   const std::size_t first = choice || multiple ? 1 : 0;
-  // Of literals alone, as SEL(G, 0, 255): it takes the type that it is assigned to.
-  const bool untyped = std::all_of(values.begin() + static_cast<std::ptrdiff_t>(first), values.end(),
-                                   [](const Value& one) { return one.loose || one.untyped; });
+  // Of literals alone, as SEL(G, 0, 255), or with one beyond the others, as MIN(X, 40000) of an INT: it takes the type
+  // that it is assigned to.
+  const Untyped untyped(std::span<const Value>(values).subspan(first));
   for (std::size_t round = 0; round < 2; ++round) {
     for (std::size_t i = first + 1; i < values.size(); ++i) {
       if (!computer_.meet(values[first], values[i], name)) {
@@ -233,7 +237,7 @@ std::optional<Value> Body::chosen(const std::string& name, std::vector<Value>& v
       result = computer_.select(here, values[i], result);
     }
   }
-  result.untyped = untyped;
+  result.untyped = result.valid() && untyped.as(result.type);
   return result;
 }
 

@@ -120,6 +120,63 @@ void Body::branches(const std::vector<syntax::Branch>& list, std::size_t at, con
       });
 }
 
+namespace {
+
+/// `3`, `-3` and `A` of an enumeration; none where it is computed.
+std::optional<double> known_label(const Source& source, Types& types, language::ExpressionId id) {
+  const auto& node = source.library->expressions[id].node;
+  double number = 0.0;
+  if (const auto* unary = std::get_if<language::Unary>(&node); unary != nullptr && unary->op == Operator::Negate) {
+    const auto inner = known_label(source, types, unary->operand);
+    return inner ? std::optional(-*inner) : std::nullopt;
+  }
+  if (const auto* access = std::get_if<syntax::Access>(&node); access != nullptr && access->steps.empty()) {
+    return types.enumerator(access->type, access->name.text, number) ? std::optional(number) : std::nullopt;
+  }
+  const auto* literal = std::get_if<syntax::Literal>(&node);
+  const bool whole = literal != nullptr && literal->kind == syntax::Literal::Kind::Whole;
+  return whole && literal->value <= static_cast<double>(highest(Plain::Udint)) ? std::optional(literal->value)
+                                                                               : std::nullopt;
+}
+
+}  // namespace
+
+/// A value that an arm before has, an empty range, and a value that the selector cannot have.
+void Body::check_labels(const syntax::Case& node, const Value& selector) {
+  std::vector<std::pair<double, double>> before;
+  for (const syntax::Arm& arm : node.arms) {
+    for (const syntax::Label& label : arm.labels) {
+      const bool range = label.high != language::no_expression;
+      const auto low = known_label(source_, types_, label.low);
+      const auto high = range ? known_label(source_, types_, label.high) : low;
+      const language::Span span = expression(label.low).span;
+      if (!low || !high || !is_integer(selector.type)) {
+        continue;
+      }
+      if (*high < *low) {
+        refuse(error::refused_in_body, span, fmt::format("the range {}..{} is empty", *low, *high),
+               fmt::format("Write the lower one first: {}..{}.", *high, *low));
+        continue;
+      }
+      const auto taken =
+          std::ranges::find_if(before, [&](const auto& one) { return one.first <= *high && *low <= one.second; });
+      if (taken != before.end()) {
+        const double both = std::max(*low, taken->first);
+        refuse(error::refused_in_body, span, fmt::format("the value {} of this CASE stands here a second time", both),
+               "The first arm takes it: leave it out of one of the two.");
+      }
+      before.emplace_back(*low, *high);
+      const Plain type = selector.type;
+      if (*low < static_cast<double>(lowest(type)) || *high > static_cast<double>(highest(type))) {
+        refuse(error::number_out_of_range, span,
+               fmt::format("the selector is {}, which never is {}", info(type).name,
+                           *low < static_cast<double>(lowest(type)) ? *low : *high),
+               fmt::format("Write values from {} to {}.", lowest(type), highest(type)));
+      }
+    }
+  }
+}
+
 Value Body::selected(const syntax::Arm& arm, const Value& selector) {
   Value any = computer_.truth(false);
   for (const syntax::Label& label : arm.labels) {
@@ -163,6 +220,9 @@ void Body::execute(const syntax::Statement& statement) {
   } else if (const auto* case_node = std::get_if<syntax::Case>(&statement.node)) {
     const Value selector = value(case_node->selector);
     if (selector.valid()) {
+      if (cases_.insert(case_node).second) {
+        check_labels(*case_node, selector);
+      }
       arms(*case_node, selector, 0);
     }
   } else if (const auto* for_node = std::get_if<syntax::For>(&statement.node)) {

@@ -22,7 +22,14 @@ Value Body::literal(const syntax::Literal& written) {
   }
   const bool real = written.kind == syntax::Literal::Kind::Real;
   if (written.type.empty()) {
-    return computer_.literal(real ? Plain::Lreal : Plain::Dint, written.value, true);
+    if (!real && written.value > static_cast<double>(highest(Plain::Udint))) {
+      return computer_.refused(
+          error::number_out_of_range, fmt::format("no whole number of a body holds {:.0f}", written.value),
+          fmt::format("They reach from {} to {}, the highest UDINT; as a real number it is {:.1f}.",
+                      lowest(Plain::Dint), highest(Plain::Udint), written.value));
+    }
+    const bool dint = written.value <= static_cast<double>(highest(Plain::Dint));
+    return computer_.literal(real ? Plain::Lreal : dint ? Plain::Dint : Plain::Udint, written.value, true);
   }
   if (!plain_of(written.type, type)) {
     const std::string_view mend = language::in_place_of_type(written.type);

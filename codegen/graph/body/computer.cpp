@@ -162,17 +162,23 @@ Value Computer::assignable(const Value& value, Plain type, const std::string& ta
     if (is_number(type)) {
       return fit({.wire = real_of(value), .type = type, .wide = true}, type);
     }
-    const bool reaches = value.loose
-                             ? value.low >= std::min(lowest(type), -highest(type) - 1) && value.low <= highest(type)
-                         : value.untyped ? value.low >= lowest(type) && value.high <= highest(type)
-                                         : lowest(value.type) >= lowest(type) && highest(value.type) <= highest(type);
-    if (!reaches && value.untyped && !value.loose) {
-      return refused(error::type_mismatch,
-                     fmt::format("{} is {}, and does not hold {}, which this choice may give", target, to.name,
-                                 value.high > highest(type) ? value.high : value.low),
-                     fmt::format("Write numbers from {} to {}.", lowest(type), highest(type)));
+    const bool by_range = value.untyped && !value.loose && !value.beyond_dint();
+    const bool reaches = value.loose ? value.low >= lowest(type) && value.low <= highest(type)
+                         : by_range  ? value.low >= lowest(type) && value.high <= highest(type)
+                                     : lowest(value.type) >= lowest(type) && highest(value.type) <= highest(type);
+    if (!reaches && by_range) {
+      return refused(
+          error::type_mismatch,
+          fmt::format("{} is {}, and does not hold {}, which this may give", target, to.name,
+                      value.high > highest(type) ? value.high : value.low),
+          fmt::format("Write numbers from {0} to {1}, or limit it: LIMIT({0}, …, {1}).", lowest(type), highest(type)));
     }
     return reaches ? fit(value, type) : mismatch(value.loose ? "Write a number within its range." : conversion);
+  }
+  if (double number = 0.0; type == Plain::Real && value.loose && constant(value, number) && std::isfinite(number) &&
+                           std::abs(number) > static_cast<double>(std::numeric_limits<float>::max())) {
+    return refused(error::number_out_of_range, fmt::format("{} is REAL, which does not hold {}", target, number),
+                   "It reaches from -3.4e38 to 3.4e38: make it LREAL.");
   }
   if (is_number(value.type) && is_number(type) && (value.loose || value.untyped || type == Plain::Lreal)) {
     return fit(value, type);
@@ -187,6 +193,9 @@ Value Computer::assignable(const Value& value, Plain type, const std::string& ta
 }
 
 Wire Computer::real_of(const Value& value) {
+  if (value.loose) {  // which may be a UDINT
+    return builder_.literal(Type::Real, static_cast<double>(value.low));
+  }
   const Wire real = apply(Op::ToReal, {value.wire});
   if (!value.beyond_dint()) {
     return real;
@@ -268,6 +277,176 @@ Value Computer::convert(const Value& value, Plain type) {
   }
   // An unsigned number that has all its bits: as a wider one it may be past the highest DINT.
   return fit(fit(value, value.type), type);
+}
+
+Untyped::Untyped(std::span<const Value> values) {
+  for (const Value& one : values) {
+    if (one.loose || one.untyped) {
+      literal_ = true;
+    } else {
+      typed_number_ = typed_number_ || is_number(one.type);
+      typed_.push_back(one.type);
+    }
+  }
+}
+
+bool Untyped::as(Plain result) const {
+  return literal_ && (is_number(result)    ? !typed_number_
+                      : is_integer(result) ? std::ranges::find(typed_, result) == typed_.end()
+                                           : typed_.empty());
+}
+
+Value Computer::beyond(Plain type, std::int64_t number) {
+  return refused(error::number_out_of_range, fmt::format("{} does not hold {}", info(type).name, number),
+                 fmt::format("It holds whole numbers from {} to {}; as a real number this one is {}.0.", lowest(type),
+                             highest(type), number));
+}
+
+namespace {
+
+bool holds(Plain type, std::int64_t low, std::int64_t high) {
+  return lowest(type) <= low && high <= highest(type);
+}
+
+/// The smallest type that holds all from low to high, of the bits where `bits` says so; none beyond 32 bits.
+std::optional<Plain> smallest(bool bits, std::int64_t low, std::int64_t high) {
+  constexpr std::array of_bits{Plain::Byte, Plain::Word, Plain::Dword};
+  constexpr std::array whole{Plain::Sint, Plain::Usint, Plain::Int, Plain::Uint, Plain::Dint, Plain::Udint};
+  const bool pattern = bits && low >= 0;
+  for (const Plain one : pattern ? std::span<const Plain>(of_bits) : std::span<const Plain>(whole)) {
+    if (holds(one, low, high)) {
+      return one;
+    }
+  }
+  return std::nullopt;
+}
+
+bool is_of_bits(std::string_view what) {
+  return what == "AND" || what == "OR" || what == "XOR";
+}
+
+}  // namespace
+
+/// A literal takes the type of its neighbour where that holds it, and both take the smallest that holds both where not.
+bool Computer::meet_literal(Value& left, Value& right, std::string_view what) {
+  if (left.loose && right.loose) {  // one of them is past the highest DINT
+    const std::int64_t low = std::min(left.low, right.low);
+    if (low < 0) {
+      return beyond(Plain::Dint, std::max(left.low, right.low)).valid();
+    }
+    left.type = right.type = Plain::Udint;
+    return true;
+  }
+  Value& number = left.loose ? left : right;
+  Value& other = left.loose ? right : left;
+  const Plain type = other.type;
+  // A pattern of bits: X AND 16#FFFF, W AND -2.
+  const std::int64_t every = (std::int64_t{1} << info(type).width) - 1;
+  const bool pattern = is_of_bits(what) && number.low >= -(every / 2) - 1 && number.low <= every;
+  if (pattern || holds(type, number.low, number.low)) {
+    number = literal(type, static_cast<double>(number.low));
+    return true;
+  }
+  const auto common = smallest(info(type).family == Family::Bits, std::min(lowest(type), number.low),
+                               std::max(highest(type), number.low));
+  if (!common) {
+    return beyond(type, number.low).valid();
+  }
+  number = literal(*common, static_cast<double>(number.low));
+  other.type = *common;
+  return true;
+}
+
+/// What + - * / MOD make of two literals is a literal.
+Value Computer::of_literals(Operator op, const Value& left, const Value& right) {
+  const std::int64_t a = left.low;
+  const std::int64_t b = right.low;
+  const double product = static_cast<double>(a) * static_cast<double>(b);
+  constexpr double far = 4503599627370496.0;  // past what any type holds
+  const std::int64_t number = op == Operator::Add        ? a + b
+                              : op == Operator::Subtract ? a - b
+                              : op == Operator::Multiply ? static_cast<std::int64_t>(std::clamp(product, -far, far))
+                              : op == Operator::Divide   ? a / b
+                                                         : a % b;
+  const bool dint = holds(Plain::Dint, number, number);
+  return dint || holds(Plain::Udint, number, number)
+             ? literal(dint ? Plain::Dint : Plain::Udint, static_cast<double>(number), true)
+             : beyond(Plain::Dint, number);
+}
+
+bool Computer::meet(Value& left, Value& right, std::string_view what) {
+  if (!left.valid() || !right.valid()) {
+    return false;
+  }
+  if (left.type == right.type) {
+    if (left.loose != right.loose && is_integer(left.type)) {
+      Value& number = left.loose ? left : right;
+      number = fit(number, left.type);
+    }
+    return true;
+  }
+  const auto to_number = [&](Value& value, Plain type) {
+    value = is_integer(value.type) ? Value{.wire = real_of(value), .type = type, .loose = value.loose} : value;
+  };
+  if (is_number(left.type) && is_number(right.type)) {  // a literal and a REAL, or an LREAL: wide
+    const auto fits_single = [](const Value& one) { return one.type == Plain::Real || one.loose || one.untyped; };
+    const bool single = fits_single(left) && fits_single(right);
+    left.wide = right.wide = true;
+    left.type = right.type = single ? Plain::Real : Plain::Lreal;
+    return true;
+  }
+  if (is_number(left.type) && is_integer(right.type)) {
+    to_number(right, left.type);
+    right.type = left.type;
+    return true;
+  }
+  if (is_integer(left.type) && is_number(right.type)) {
+    to_number(left, right.type);
+    left.type = right.type;
+    return true;
+  }
+  if (is_integer(left.type) && is_integer(right.type)) {
+    if (left.loose || right.loose) {
+      return meet_literal(left, right, what);
+    }
+    if (left.untyped != right.untyped) {
+      Value& chosen = left.untyped ? left : right;
+      const Plain type = left.untyped ? right.type : left.type;
+      if (chosen.low >= lowest(type) && chosen.high <= highest(type)) {
+        chosen = fit(chosen, type);
+        return true;
+      }
+    }
+    const auto holds = [](Plain wide, Plain narrow) {
+      return lowest(narrow) >= lowest(wide) && highest(narrow) <= highest(wide);
+    };
+    if (holds(left.type, right.type) || holds(right.type, left.type)) {
+      (holds(left.type, right.type) ? right.type : left.type) = holds(left.type, right.type) ? left.type : right.type;
+      return true;
+    }
+    if (info(left.type).width < 32 && info(right.type).width < 32) {
+      left.type = right.type = Plain::Dint;
+      return true;
+    }
+  }
+  // A literal number beside a BOOL: 0 and 1 are its values.
+  for (auto* one : {&left, &right}) {
+    Value& other = one == &left ? right : left;
+    if (one->loose && other.type == Plain::Bool && is_integer(one->type) && (one->low == 0 || one->low == 1)) {
+      *one = truth(one->low == 1);
+      return true;
+    }
+  }
+  const bool is_time = left.type == Plain::Time || right.type == Plain::Time;
+  const Value& other = left.type == Plain::Time ? right : left;
+  double number = 0.0;
+  const bool plain = is_time && other.loose && constant(other, number);
+  refused(error::type_mismatch,
+          fmt::format("{} does not take {} and {}", what, info(left.type).name, info(right.type).name),
+          plain ? fmt::format("Write the number with its unit: T#{0}s, or T#{0}ms.", number_text(number))
+                : fmt::format("Convert one of them: {}_TO_{}( … ).", info(other.type).name,
+                              info(&other == &left ? right.type : left.type).name));
+  return false;
 }
 
 }  // namespace hysteron::bodies

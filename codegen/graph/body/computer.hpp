@@ -6,9 +6,12 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "codegen/graph/body/types.hpp"
 #include "codegen/graph/lowering.hpp"
@@ -19,13 +22,27 @@ struct Value {
   Wire wire{};
   Plain type = Plain::Bool;
   bool loose = false;    ///< a literal without a type: it takes that of its neighbour
-  bool untyped = false;  ///< chosen among such literals: it takes any type that holds them all
+  bool untyped = false;  ///< made of such literals, or with one beyond its neighbour: each type that holds it takes it
   bool wide = false;     ///< a REAL that was not yet rounded to 32 bits
   std::int64_t low = 0;
   std::int64_t high = 0;  ///< integers: what it may be, between these
   [[nodiscard]] bool valid() const { return wire.from != Wire::From::Nothing; }
   /// It may be above the greatest DINT, whose bits are those of a number below 0: its range is that of the bits.
   [[nodiscard]] bool beyond_dint() const { return is_unsigned_32(type) && low < 0; }
+};
+
+/// Whether what is made of some values has a type by its range or its target alone: of literals; of a literal beyond
+/// its neighbour, X + 40000; of a real literal and integers, X * 0.1.
+class Untyped {
+ public:
+  explicit Untyped(std::span<const Value> values);
+  Untyped(std::initializer_list<Value> values) : Untyped(std::span(values.begin(), values.size())) {}
+  [[nodiscard]] bool as(Plain result) const;
+
+ private:
+  bool literal_ = false;
+  bool typed_number_ = false;
+  std::vector<Plain> typed_{};
 };
 
 class Computer {
@@ -86,6 +103,11 @@ class Computer {
   Value bits(language::Operator op, const Value& left, const Value& right, Plain type);
   Value divided(bool remainder, const Value& left, const Value& right, Plain type);
   static Value ranged(Wire wire, Plain type, std::int64_t low, std::int64_t high);
+  bool meet_literal(Value& left, Value& right, std::string_view what);
+  Value of_literals(language::Operator op, const Value& left, const Value& right);
+  Value beyond(Plain type, std::int64_t number);
+  [[nodiscard]] bool is_zero(const Value& value) const;
+  void warn_of_zero(bool remainder);
 
   GraphBuilder& builder_;
   Report report_;

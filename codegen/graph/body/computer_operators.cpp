@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "codegen/graph/body/computer.hpp"
 #include "support/errors.hpp"
@@ -36,7 +38,8 @@ Value Computer::negative(const Value& value) {
     return value;
   }
   if (value.loose && is_integer(value.type)) {
-    return literal(value.type, -static_cast<double>(value.low), true);
+    return -value.low < lowest(Plain::Dint) ? beyond(Plain::Dint, -value.low)
+                                            : literal(Plain::Dint, -static_cast<double>(value.low), true);
   }
   if (is_integer(value.type)) {
     Value result = ranged(apply(Op::IntNegate, {value.wire}), value.type, -value.high, -value.low);
@@ -67,80 +70,6 @@ Value Computer::inverse(const Value& value) {
           .high = highest_whole};
 }
 
-bool Computer::meet(Value& left, Value& right, std::string_view what) {
-  if (!left.valid() || !right.valid()) {
-    return false;
-  }
-  if (left.type == right.type) {
-    return true;
-  }
-  const auto to_number = [&](Value& value, Plain type) {
-    value = is_integer(value.type) ? Value{.wire = real_of(value), .type = type, .loose = value.loose} : value;
-  };
-  if (is_number(left.type) && is_number(right.type)) {  // a literal and a REAL, or an LREAL: wide
-    const auto fits_single = [](const Value& one) { return one.type == Plain::Real || one.loose || one.untyped; };
-    const bool single = fits_single(left) && fits_single(right);
-    left.wide = right.wide = true;
-    left.type = right.type = single ? Plain::Real : Plain::Lreal;
-    return true;
-  }
-  if (is_number(left.type) && is_integer(right.type)) {
-    to_number(right, left.type);
-    right.type = left.type;
-    return true;
-  }
-  if (is_integer(left.type) && is_number(right.type)) {
-    to_number(left, right.type);
-    left.type = right.type;
-    return true;
-  }
-  if (is_integer(left.type) && is_integer(right.type)) {
-    if (left.loose || right.loose) {
-      Value& literal_side = left.loose ? left : right;
-      const Plain type = left.loose ? right.type : left.type;
-      literal_side = literal(type, static_cast<double>(literal_side.low));
-      return true;
-    }
-    if (left.untyped != right.untyped) {
-      Value& chosen = left.untyped ? left : right;
-      const Plain type = left.untyped ? right.type : left.type;
-      if (chosen.low >= lowest(type) && chosen.high <= highest(type)) {
-        chosen = fit(chosen, type);
-        return true;
-      }
-    }
-    const auto holds = [](Plain wide, Plain narrow) {
-      return lowest(narrow) >= lowest(wide) && highest(narrow) <= highest(wide);
-    };
-    if (holds(left.type, right.type) || holds(right.type, left.type)) {
-      (holds(left.type, right.type) ? right.type : left.type) = holds(left.type, right.type) ? left.type : right.type;
-      return true;
-    }
-    if (info(left.type).width < 32 && info(right.type).width < 32) {
-      left.type = right.type = Plain::Dint;
-      return true;
-    }
-  }
-  // A literal number beside a BOOL: 0 and 1 are its values.
-  for (auto* one : {&left, &right}) {
-    Value& other = one == &left ? right : left;
-    if (one->loose && other.type == Plain::Bool && is_integer(one->type) && (one->low == 0 || one->low == 1)) {
-      *one = truth(one->low == 1);
-      return true;
-    }
-  }
-  const bool is_time = left.type == Plain::Time || right.type == Plain::Time;
-  const Value& other = left.type == Plain::Time ? right : left;
-  double number = 0.0;
-  const bool plain = is_time && other.loose && constant(other, number);
-  refused(error::type_mismatch,
-          fmt::format("{} does not take {} and {}", what, info(left.type).name, info(right.type).name),
-          plain ? fmt::format("Write the number with its unit: T#{0}s, or T#{0}ms.", number_text(number))
-                : fmt::format("Convert one of them: {}_TO_{}( … ).", info(other.type).name,
-                              info(&other == &left ? right.type : left.type).name));
-  return false;
-}
-
 Value Computer::integer(Op op, const Value& left, const Value& right, Plain type) {
   std::int64_t low = lowest_whole;
   std::int64_t high = highest_whole;
@@ -160,7 +89,22 @@ Value Computer::integer(Op op, const Value& left, const Value& right, Plain type
   return ranged(apply(op, {left.wire, right.wire}), type, low, high);
 }
 
+bool Computer::is_zero(const Value& value) const {
+  return GraphBuilder::is_literal(value.wire) && builder_.value(value.wire) == 0.0;
+}
+
+void Computer::warn_of_zero(bool remainder) {
+  report_(error::other_meaning_elsewhere, span_,
+          fmt::format("{} by 0 gives {} here; MATIEC refuses it, and many PLCs stop", remainder ? "MOD" : "a division",
+                      remainder ? "0" : "0, or infinity of real numbers"),
+          "Write a number that is not 0, or leave the division out.");
+}
+
 Value Computer::divided(bool remainder, const Value& left, const Value& right, Plain type) {
+  if (is_zero(right)) {
+    warn_of_zero(remainder);
+    return literal(type, 0.0);
+  }
   if (!left.beyond_dint() && !right.beyond_dint()) {
     const Value result = integer(remainder ? Op::IntModulo : Op::IntDivide, left, right, type);
     if (!remainder && right.low < 0) {
@@ -282,10 +226,13 @@ Value Computer::binary(Operator op, Value left, Value right) {
       return {};
     }
     const bool single = left.type == Plain::Real;
+    const bool untyped = Untyped({left}).as(Plain::Lreal);
     left = is_number(left.type) ? left : Value{.wire = real_of(left), .type = Plain::Lreal};
     right = is_number(right.type) ? right : Value{.wire = real_of(right), .type = Plain::Lreal};
-    return {
-        .wire = apply(Op::Power, {left.wire, right.wire}), .type = single ? Plain::Real : Plain::Lreal, .wide = true};
+    return {.wire = apply(Op::Power, {left.wire, right.wire}),
+            .type = single ? Plain::Real : Plain::Lreal,
+            .untyped = untyped,
+            .wide = true};
   }
   const bool scaled = info(left.type).family == Family::Duration || info(right.type).family == Family::Duration;
   if (scaled && (op == Operator::Multiply || op == Operator::Divide) && left.type != right.type) {
@@ -295,6 +242,11 @@ Value Computer::binary(Operator op, Value left, Value right) {
     }
   }
   const bool loose = left.loose && right.loose;
+  if (loose && is_integer(left.type) && is_integer(right.type) && op >= Operator::Add && op <= Operator::Modulo &&
+      (right.low != 0 || op < Operator::Divide)) {
+    return of_literals(op, left, right);
+  }
+  const Untyped untyped({left, right});
   if (!meet(left, right, text_of(op))) {
     return {};
   }
@@ -319,13 +271,21 @@ Value Computer::binary(Operator op, Value left, Value right) {
                    : op == Operator::Multiply ? integer(Op::IntMultiply, left, right, type)
                                               : divided(op == Operator::Modulo, left, right, type);
     result.loose = loose && result.low == result.high;
+    result.untyped = !result.loose && untyped.as(type);
     return result;
   }
   const Op chosen = op == Operator::Add        ? Op::Add
                     : op == Operator::Subtract ? Op::Subtract
                     : op == Operator::Multiply ? Op::Multiply
                                                : Op::Divide;
-  Value result{.wire = apply(chosen, {left.wire, right.wire}), .type = type, .loose = loose, .wide = true};
+  if (op == Operator::Divide && is_zero(right)) {
+    warn_of_zero(false);
+  }
+  Value result{.wire = apply(chosen, {left.wire, right.wire}),
+               .type = type,
+               .loose = loose,
+               .untyped = untyped.as(type),
+               .wide = true};
   const bool wide = left.wide || right.wide || left.loose || right.loose;
   return type == Plain::Real && !wide ? fit(result, type) : result;
 }

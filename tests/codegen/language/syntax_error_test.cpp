@@ -145,7 +145,7 @@ TEST(SyntaxError, Declarations) {
   EXPECT_THAT(in_section("X : LINT; Y : POINTER; Z : DATE;"), ElementsAre("113 3:5+4", "113 3:15+7", "113 3:28+4"));
   EXPECT_THAT(in_section("A__B, C_ : LREAL;"), ElementsAre("114 3:1+4", "114 3:7+2"));
   EXPECT_THAT(in_section("X AT %QX0.0 : BOOL;"), ElementsAre("127 3:3+2", "127 3:6+6"));
-  EXPECT_THAT(in_section("IF : BOOL; Y : LREAL := ; Z LREAL;"), ElementsAre("102 3:1+2", "102 3:25+1", "102 3:29+5"));
+  EXPECT_THAT(in_section("IF : BOOL; Y : LREAL := ; Z LREAL;"), ElementsAre("124 3:1+2", "102 3:25+1", "102 3:29+5"));
   EXPECT_THAT(in_section("TYPE, Class : LREAL; Y : BOOL := TYPE;"), ElementsAre("124 3:1+4", "124 3:34+4"));
   EXPECT_THAT(in_section("X : LREAL\nY : BOOL;"), ElementsAre("103 3:10+1"));
   EXPECT_THAT(in_section("T : HY_TABLE := (X := [0.0, [1.0]]);"), ElementsAre("126 3:29+1"));

@@ -1,9 +1,13 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "codegen/compile.hpp"
+#include "codegen/language/syntax.hpp"
 #include "support/atomic_file.hpp"
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
@@ -17,9 +21,10 @@ constexpr std::string_view fmt_examples = R"(Examples:
   hysteron fmt --stdout /dev/stdin < a.st   for an editor
   hysteron fmt --any-order drawn.st         sorts the statements by the data flow
 
-Comments are kept; formatting twice changes nothing. A file with syntax errors is left as it is, and so is one that
-reads a value on the wrong side of its assignment or call (HY402, HY405): to move it would change what an IEC compiler
-makes of the text. --any-order says that the order means nothing, as in what a drawing tool wrote.
+Comments are kept; formatting twice changes nothing. A file with a sequential body is left as it is, with its diagrams,
+and a note says so. A file with syntax errors is left as it is, and so is one that reads a value on the wrong side of its
+assignment or call (HY402, HY405): to move it would change what an IEC compiler makes of the text. --any-order says that
+the order means nothing, as in what a drawing tool wrote.
 Exit codes: 0 done; 1 with --check, files would change; 2 a file cannot be read, understood or written.
 )";
 
@@ -29,6 +34,18 @@ struct FmtOptions {
   bool to_stdout = false;
   bool any_order = false;
 };
+
+/// A body has a layout of its own, and comes back as it stands: with the file around it.
+void tell_of_bodies(const std::string& path, const std::string& text) {
+  Diagnostics ignored;
+  const language::SourceFile file = language::parse(path, text, ignored);
+  const auto body = std::ranges::find_if(file.blocks, &language::FunctionBlock::sequential);
+  if (file.bodies && body != file.blocks.end()) {
+    const auto diagrams = std::ranges::count_if(file.blocks, [](const auto& one) { return !one.sequential; });
+    Console::note(path, fmt::format("{} has a sequential body, so the file is left as it stands{}", body->name.text,
+                                    diagrams == 0 ? "" : "; in a file of their own its diagrams are formatted"));
+  }
+}
 
 int format_files(const FmtOptions& options, Console& console) {
   Diagnostics refused;
@@ -45,6 +62,7 @@ int format_files(const FmtOptions& options, Console& console) {
       if (!own.all().empty()) {
         console.report(own);
       }
+      tell_of_bodies(path, text);
       if (options.check) {
         if (formatted != text) {
           would_change = true;

@@ -13,6 +13,7 @@
 #include "codegen/import/global_list.hpp"
 #include "codegen/import/plcopen_import.hpp"
 #include "codegen/import/twincat_import.hpp"
+#include "codegen/language/time_literal.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -105,6 +106,13 @@ std::string text_of(const ImportCommand& command, Diagnostics& warnings) {
 }
 
 int import_project(const ImportCommand& command, Console& console) {
+  if (const std::string& cycle = command.options.cycle; !cycle.empty()) {
+    const auto nanoseconds = language::nanoseconds_of_time(cycle);
+    if (!nanoseconds || !(*nanoseconds >= 1.0)) {
+      throw InputError(error::bad_usage, {}, fmt::format("{} is no sample time.", cycle),
+                       "write a time above 0 with its unit, as in --ts 10ms.");
+    }
+  }
   Diagnostics warnings;
   refuse_to_overwrite({.file = command.out, .mend = "give another name for --out."}, {{.file = command.file}});
   const std::string text = text_of(command, warnings);

@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
+#include "codegen/graph/body/whole_inputs.hpp"
 #include "codegen/graph/defaults.hpp"
 #include "codegen/graph/sample_time.hpp"
 #include "codegen/parameters/apply.hpp"
@@ -51,9 +53,11 @@ std::int64_t find_port(const std::vector<Port>& ports, const TestSignal& signal,
   return -1;
 }
 
-void check_types(const TestSignal& signal, const Port& port, const Signal& values, Diagnostics& diagnostics) {
+void check_types(const TestSignal& signal, const Port& port, const std::optional<bodies::WholeInput>& whole,
+                 const Signal& values, Diagnostics& diagnostics) {
   for (const double value : values) {
-    if (const auto fault = type_fault(port.type, value); !fault.empty()) {
+    const auto fault = whole ? bodies::whole_fault(*whole, value) : type_fault(port.type, value);
+    if (!fault.empty()) {
       diagnostics.error(error::wrong_test_value, signal.value_place,
                         fmt::format("{} {}, not {}.", port.name, fault, number_text(value)),
                         port.type == Type::Bool ? "write true or false." : "write a whole number.");
@@ -197,6 +201,7 @@ class CasePlan {
 
   void lay_out_inputs() {
     std::vector<Signal> given(graph().inputs.size());
+    const auto wholes = bodies::whole_inputs(graph());
     for (const TestSignal& signal : test().inputs) {
       const auto port = find_port(graph().inputs, signal, "input", diagnostics_);
       if (port < 0) {
@@ -214,7 +219,10 @@ class CasePlan {
         continue;
       }
       given[index] = signal_of(signal);
-      check_types(signal, graph().inputs[index], given[index], diagnostics_);
+      check_types(signal, graph().inputs[index], wholes[index], given[index], diagnostics_);
+      for (double& value : given[index]) {
+        value = wholes[index] ? bodies::carried(*wholes[index], value) : value;
+      }
     }
     if (record_) {
       planned_.drive = drive_from(*record_, planned_.program, std::move(given), diagnostics_);
@@ -286,7 +294,7 @@ class CasePlan {
     for (const auto& [step, value] : expected.values) {
       flat.push_back(value);
     }
-    check_types(signal, graph().outputs[expected.output], flat, diagnostics_);
+    check_types(signal, graph().outputs[expected.output], std::nullopt, flat, diagnostics_);
     planned_.expected.push_back(std::move(expected));
   }
 

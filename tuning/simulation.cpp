@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "codegen/graph/body/whole_inputs.hpp"
 #include "codegen/graph/defaults.hpp"
 #include "records/time/time_grid.hpp"
 #include "records/time/time_unit.hpp"
@@ -25,13 +27,15 @@ std::string number_of_values(std::size_t count) {
   return count == 1 ? "1 value" : fmt::format("{} values", count);
 }
 
-void check_values(const Port& input, const Signal& values, const records::Record& record, Diagnostics& diagnostics) {
+void check_values(const Port& input, const std::optional<bodies::WholeInput>& whole, const Signal& values,
+                  const records::Record& record, Diagnostics& diagnostics) {
   std::size_t outside = 0;
   std::size_t first = 0;
   double most_beyond = 0.0;
   double farthest = 0.0;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (const auto fault = type_fault(input.type, values[k]); !fault.empty()) {
+    const auto fault = whole ? bodies::whole_fault(*whole, values[k]) : type_fault(input.type, values[k]);
+    if (!fault.empty()) {
       diagnostics.error(error::unfit_value, record.place(input.name, k),
                         fmt::format("The column {} is {} at t = {} s, but the input {}.", input.name,
                                     number_text(values[k]), number_text(record.time()[k]), fault),
@@ -104,6 +108,7 @@ Drive drive_from(const records::Record& record, const Program& program, std::vec
   const Graph& graph = program.graph;
   Drive drive{.inputs = std::move(given), .steps = record.size(), .sample_time = record.sample_time()};
   drive.inputs.resize(graph.inputs.size());
+  const auto wholes = bodies::whole_inputs(graph);
   for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
     const Port& input = graph.inputs[i];
     if (!drive.inputs[i].empty()) {
@@ -111,7 +116,10 @@ Drive drive_from(const records::Record& record, const Program& program, std::vec
     }
     if (const records::Column* const column = record.find(input.name)) {
       drive.inputs[i] = column->values;
-      check_values(input, column->values, record, diagnostics);
+      check_values(input, wholes[i], column->values, record, diagnostics);
+      for (double& value : drive.inputs[i]) {
+        value = wholes[i] ? bodies::carried(*wholes[i], value) : value;
+      }
     } else if (has_default(graph, input)) {
       drive.inputs[i] = {input.preset};
     } else {

@@ -136,7 +136,9 @@ class ProjectReader {
     pugi::xml_document document;
     const auto result = document.load_buffer(text_.data(), text_.size());
     if (!result) {
-      throw refusal(line_at(result.offset), fmt::format("the XML ends being XML here: {}", result.description()),
+      throw result.status == pugi::status_no_document_element
+          ? refusal(0, "there is no XML element in it", "Export the file again; nothing arrived in it.")
+          : refusal(line_at(result.offset), fmt::format("the XML ends being XML here: {}", result.description()),
                     "Export the file again; it may have been cut.");
     }
     const xml_node project = child(document.root(), tc6::project);
@@ -307,26 +309,35 @@ class ProjectReader {
                          .id = number_of<std::uint64_t>(node.attribute(tc6::local_id).value()),
                          .order = stated_number(node.attribute(tc6::execution_order).value()),
                          .instance = node.attribute(tc6::instance_name).value(),
-                         .negated = node.attribute(tc6::negated).as_bool(),
                          .storage = node.attribute(tc6::storage).value(),
                          .edge = node.attribute(tc6::edge).value(),
                          .line = line_of(node)};
     if (const auto order = node.attribute(tc6::execution_order); order && !element.order) {
       element.unread_order = fmt::format("\"{}\"", std::string_view(order.value()).substr(0, 60));
     }
+    element.negated = truth_of(node, tc6::negated, element.unread) ||
+                      truth_of(node, tc6::negated_out, element.unread);  // of what is read and assigned
+    if (truth_of(node, tc6::negated_in, element.unread)) {
+      element.unread.push_back(fmt::format("{}=\"true\"", tc6::negated_in));
+    }
     const xml_node position = child(node, tc6::position);
     element.x = position.attribute("x").as_double();
     element.y = position.attribute("y").as_double();
     if (element.kind == tc6::block) {
       element.text = node.attribute(tc6::type_name).value();
-      read_pins(child(node, tc6::input_variables), element.inputs);
-      read_pins(child(node, tc6::output_variables), element.outputs);
-      read_pins(child(node, tc6::in_out_variables), element.both);
+      read_pins(child(node, tc6::input_variables), element.inputs, element.unread);
+      read_pins(child(node, tc6::output_variables), element.outputs, element.unread);
+      read_pins(child(node, tc6::in_out_variables), element.both, element.unread);
       return element;
     }
     for (const char* const name : {tc6::expression, tc6::variable}) {
       const xml_node text = child(node, name);
       element.text = text ? without_blanks(text_below(text)) : element.text;
+    }
+    if (element.kind == tc6::vendor_element) {
+      read_pins(child(node, tc6::input_variables), element.inputs, element.unread);
+      read_pins(child(node, tc6::output_variables), element.outputs, element.unread);
+      return element;
     }
     if (element.kind == tc6::connector || element.kind == tc6::continuation) {
       element.text = node.attribute(tc6::name).value();
@@ -340,10 +351,21 @@ class ProjectReader {
     return element;
   }
 
-  static void read_pins(xml_node list, std::vector<DrawnPin>& pins) {
+  /// TRUE or FALSE of an attribute; where it is neither, that is noted.
+  static bool truth_of(xml_node node, const char* name, std::vector<std::string>& unread) {
+    const std::string_view value = node.attribute(name).value();
+    const bool yes = equal_ignoring_case(value, "true") || value == "1";
+    if (!yes && !value.empty() && !equal_ignoring_case(value, "false") && value != "0") {
+      unread.push_back(fmt::format("{}=\"{}\"", name, value.substr(0, 60)));
+    }
+    return yes;
+  }
+
+  static void read_pins(xml_node list, std::vector<DrawnPin>& pins, std::vector<std::string>& unread) {
     for_each(list, tc6::variable, [&](xml_node node) {
       DrawnPin pin{.name = without_blanks(node.attribute(tc6::formal_parameter).value()),
-                   .negated = node.attribute(tc6::negated).as_bool()};
+                   .negated = truth_of(node, tc6::negated, unread),
+                   .storage = node.attribute(tc6::storage).value()};
       const std::string_view edge = node.attribute(tc6::edge).value();
       pin.edge = !edge.empty() && edge != "none";
       read_point(child(node, tc6::point_in), pin);

@@ -21,7 +21,8 @@ struct Link {
 struct DrawnPin {
   std::string name{};
   bool negated = false;
-  bool edge = false;  ///< of an input: only its rise or fall counts
+  bool edge = false;      ///< only its rise or fall counts
+  std::string storage{};  ///< set, reset
   std::vector<Link> links{};
   std::string expression{};  ///< in place of links
 };
@@ -31,6 +32,7 @@ struct DrawnElement {
   std::uint64_t id = 0;
   std::optional<std::uint64_t> order{};  ///< of execution, where it is stated
   std::string unread_order{};            ///< what stands for it and is no whole number, in quotation marks
+  std::vector<std::string> unread{};     ///< other attributes, of its pins too, whose value says nothing
   double x = 0.0;
   double y = 0.0;
   std::string text{};      ///< expression, type of a block, variable of a contact or coil, name of a connector

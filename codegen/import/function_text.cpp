@@ -54,9 +54,34 @@ Value applied(const plcopen::OperatorFunction* own, const std::string& name, con
   result.type = own->is_comparison ? result.type.value_or(Type::Bool).of(Type::Bool) : result.type;
   result.text = arguments.front().text;
   for (std::size_t i = 1; i < arguments.size(); ++i) {
-    result.text = fmt::format("({} {} {})", result.text, own->symbol, arguments[i].text);
+    const std::string& left = own->is_comparison ? arguments[i - 1].text : result.text;
+    const std::string pair = fmt::format("({} {} {})", left, own->symbol, arguments[i].text);
+    result.text = own->is_comparison && i > 1 ? fmt::format("({} AND {})", result.text, pair) : pair;
   }
   return result;
+}
+
+std::string wrong_count(const plcopen::OperatorFunction* own, std::string_view name, std::size_t count) {
+  const bool is_not = own != nullptr && own->op == language::Operator::Not;
+  const bool several = (own != nullptr && !is_not) || name == "MIN" || name == "MAX";
+  if (several && count < 2) {
+    return "it has one input, and takes two";
+  }
+  const bool extends =
+      own == nullptr || own->takes_more || (own->is_comparison && own->op != language::Operator::NotEqual);
+  if (const std::size_t most = is_not ? 1 : 2; !extends && count > most) {
+    return fmt::format("it has {} inputs, and {} takes {}", count, name, most == 1 ? "one" : "two");
+  }
+  return "";
+}
+
+std::optional<std::size_t> place_of_input(std::string_view function, std::string_view input, std::size_t next) {
+  if (const auto place = plcopen::place_of(function, input)) {
+    return place;
+  }
+  const bool counted = input.size() >= 2 && equal_ignoring_case(input.substr(0, 2), "IN") &&
+                       input.find_first_not_of("0123456789", 2) == std::string_view::npos;
+  return input.empty() || counted ? std::optional(next) : std::nullopt;
 }
 
 std::string negated(const std::string& text) {

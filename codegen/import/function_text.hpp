@@ -28,6 +28,14 @@ struct Value {
 [[nodiscard]] Value applied(const plcopen::OperatorFunction* own, const std::string& name,
                             const std::vector<Value>& arguments);
 
+/// What is wrong with this number of arguments; empty where nothing is, or where the check of the text tells it.
+[[nodiscard]] std::string wrong_count(const plcopen::OperatorFunction* own, std::string_view name, std::size_t count);
+
+/// Where an input of a function belongs: by its name, or behind those before it where editors give it none of its own.
+/// Nothing where the function has no such input.
+[[nodiscard]] std::optional<std::size_t> place_of_input(std::string_view function, std::string_view input,
+                                                        std::size_t next);
+
 [[nodiscard]] std::string negated(const std::string& text);
 
 /// The type of an output of a block of the library, by the names of type and pin; nothing where it is none.

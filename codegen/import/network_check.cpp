@@ -79,15 +79,33 @@ std::vector<Objection> wrong_elements(const DrawnPou& pou, const Assigners& assi
   return result;
 }
 
+/// A wire comes from a localId: it has to be one element's. Rails are all the same, and no wire leads to what tells
+/// alone.
+std::set<const DrawnElement*> with_a_taken_id(const DrawnPou& pou) {
+  std::set<const DrawnElement*> doubles;
+  std::map<std::uint64_t, std::string_view> kinds;
+  for (const DrawnElement& element : pou.elements) {
+    if (element.kind == tc6::comment || element.kind == tc6::vendor_element || element.kind == tc6::right_rail) {
+      continue;
+    }
+    const auto [known, is_new] = kinds.emplace(element.id, element.kind);
+    if (!is_new && (element.kind != tc6::left_rail || known->second != tc6::left_rail)) {
+      doubles.insert(&element);
+    }
+  }
+  return doubles;
+}
+
 }  // namespace
 
 std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, const Assigners& assigners) {
   static const std::set<std::string_view> known{
       tc6::in_variable, tc6::out_variable, tc6::block,      tc6::connector, tc6::continuation,    tc6::contact,
-      tc6::coil,        tc6::left_rail,    tc6::right_rail, tc6::comment,   tc6::in_out_variable, "vendorElement"};
+      tc6::coil,        tc6::left_rail,    tc6::right_rail, tc6::comment,   tc6::in_out_variable, tc6::vendor_element};
   std::vector<Objection> result = undecided_assignments(assigners);
   std::ranges::move(wrong_elements(pou, assigners), std::back_inserter(result));
   std::set<std::string> instances;
+  const std::set<const DrawnElement*> doubles = with_a_taken_id(pou);
   for (const DrawnElement& element : pou.elements) {
     const auto object = [&](std::string why, std::string mend) {
       result.push_back({.element = &element, .why = std::move(why), .mend = std::move(mend)});
@@ -98,6 +116,27 @@ std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, 
     if (!element.unread_order.empty()) {
       object(fmt::format("its executionOrderId {} is no whole number from 0", element.unread_order),
              "Write a number that no other element has, or take the attribute out.");
+    }
+    for (const std::string& one : element.unread) {
+      object(fmt::format("its {} says nothing here", one), "Write true or false, or take the attribute out.");
+    }
+    if (doubles.contains(&element)) {
+      object("another element has this localId", "Give each a number of its own, or export the POU again.");
+    }
+    if (element.kind == tc6::vendor_element && (!element.inputs.empty() || !element.outputs.empty())) {
+      object("nobody but its editor knows what it does", "Draw it with blocks and variables.");
+    }
+    for (const DrawnPin& pin : element.outputs) {
+      if (pin.edge) {
+        object(fmt::format("its output {} takes an edge", pin.name), "Put an R_TRIG or F_TRIG behind it.");
+      }
+    }
+    for (const auto* const pins : {&element.inputs, &element.both, &element.outputs}) {
+      for (const DrawnPin& pin : *pins) {
+        if (!pin.storage.empty() && pin.storage != "none") {
+          object(fmt::format("its pin {} sets or resets", pin.name), "Put an SR or RS there.");
+        }
+      }
     }
     for (const DrawnPin& pin : element.both) {
       const auto callee = own.find(in_capitals(element.text));

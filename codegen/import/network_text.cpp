@@ -119,7 +119,7 @@ class Reader {
     if (value.text.empty()) {
       return refuse(element, "nothing is connected to it", "Connect it, or take it out.");
     }
-    variables_.assign(key, element.negated ? negated(value.text) : value.text, element.order, refusing(element));
+    variables_.assign(key, element.negated ? negation(element, value) : value.text, element.order, refusing(element));
   }
 
   Refuse refusing(const DrawnElement& element) {
@@ -138,19 +138,36 @@ class Reader {
       if (is_enable(element, pin)) {
         continue;
       }
+      const auto place = place_of_input(name, pin.name, arguments.size());
+      if (!place) {
+        return refuse(element, fmt::format("{} has no input {}", name, pin.name),
+                      fmt::format("Name it as the standard does: {}.", plcopen::input_of(name, i)));
+      }
       const Value value = input_value(element, pin);
       if (value.text.empty()) {
-        continue;
+        return refuse(element, fmt::format("its input {} is not connected", plcopen::input_of(name, *place)),
+                      "Connect it, or take the pin out.");
       }
-      const std::size_t place = plcopen::place_of(name, pin.name).value_or(arguments.size());
-      arguments.resize(std::max(arguments.size(), place + 1));
-      arguments[place] = value;
+      arguments.resize(std::max(arguments.size(), *place + 1));
+      if (!arguments[*place].text.empty()) {
+        return refuse(element, fmt::format("its input {} is there twice", plcopen::input_of(name, *place)),
+                      "Name each of its inputs once.");
+      }
+      arguments[*place] = value;
     }
-    const bool complete = std::ranges::none_of(arguments, [](const Value& one) { return one.text.empty(); });
-    if (arguments.empty() || !complete) {
-      return refuse(element, "an input is not connected", "Connect all its inputs.");
+    const auto open = std::ranges::find_if(arguments, [](const Value& one) { return one.text.empty(); });
+    if (arguments.empty() || open != arguments.end()) {
+      const auto place = static_cast<std::size_t>(open - arguments.begin());
+      return refuse(element, fmt::format("it has no input {}", plcopen::input_of(name, place)),
+                    "Draw all inputs of the function.");
+    }
+    if (const std::string wrong = wrong_count(own, name, arguments.size()); !wrong.empty()) {
+      return refuse(element, wrong, "Draw it with the inputs that the standard gives it.");
     }
     state.value = name == "MOVE" ? arguments.front() : applied(own, name, arguments);
+    const bool turned = std::ranges::any_of(
+        element.outputs, [](const DrawnPin& one) { return one.negated && !equal_ignoring_case(one.name, "ENO"); });
+    state.value.text = turned ? negation(element, state.value) : state.value.text;
     const bool shared = readers_[element.id] > 1 || state.value.text.size() > longest_expression;
     if ((shared || !state.variable.empty()) && state.value.type) {
       const std::string variable =
@@ -244,13 +261,28 @@ class Reader {
     }
     for (const Link& link : pin.links) {
       const Value one = link_value(element, link);
+      if (!result.text.empty() && !(may_be_bool(result) && may_be_bool(one))) {
+        refuse(element,
+               fmt::format("{} wires lead to {}, and only BOOLs are joined, by an OR", pin.links.size(),
+                           pin.name.empty() ? "it" : "its input " + pin.name),
+               "Connect one of them.");
+      }
       result = result.text.empty() ? one : Value{fmt::format("({} OR {})", result.text, one.text), Type::Bool};
     }
     if (pin.negated && !result.text.empty()) {
-      result.text = negated(result.text);
+      result.text = negation(element, result);
     }
     return result;
   }
+
+  std::string negation(const DrawnElement& element, const Value& value) {
+    if (value.type && (value.type->type == Type::Real || value.type->type == Type::Int)) {
+      refuse(element, fmt::format("it negates {}, which is a number", value.text), "Negate a BOOL, or multiply by -1.");
+    }
+    return negated(value.text);
+  }
+
+  static bool may_be_bool(const Value& value) { return !value.type || value.type->type == Type::Bool; }
 
   Value link_value(const DrawnElement& reader, const Link& link) {
     const auto found = by_id_.find(link.element);
@@ -266,6 +298,10 @@ class Reader {
     }
     Value value = element_value(found->second, link, reader);
     --depth_;
+    if (value.text.empty()) {
+      refuse(pou_.elements[found->second], "nothing is connected to it", "Connect it, or take it out.");
+      return {"FALSE", std::nullopt};
+    }
     return value;
   }
 
@@ -273,7 +309,7 @@ class Reader {
     const DrawnElement& element = pou_.elements[index];
     if (element.kind == tc6::in_variable || element.kind == tc6::in_out_variable) {
       Value value = expression_value(element, element.text);
-      value.text = element.negated ? negated(value.text) : value.text;
+      value.text = element.negated ? negation(element, value) : value.text;
       return value;
     }
     if (element.kind == tc6::left_rail) {
@@ -297,7 +333,7 @@ class Reader {
       if (!reader.order || reader.kind != tc6::block || element.order == reader.order) {
         run_element(index);  // what feeds a variable, or a block without an order of its own, runs before it
       }
-      return element.instance.empty() ? function_value(index) : output_value(element, link.pin);
+      return element.instance.empty() ? function_value(index, link.pin) : output_value(element, link.pin);
     }
     refuse(reader, fmt::format("it is connected to a {}", element.kind), "Connect it to a block or a variable.");
     return {"FALSE", std::nullopt};
@@ -306,15 +342,28 @@ class Reader {
   Value contact_value(const DrawnElement& element) {
     Value own = expression_value(element, element.text);
     own.text = element.negated ? negated(own.text) : own.text;
-    const Value before =
-        element.inputs.empty() ? Value{"TRUE", Type::Bool} : input_value(element, element.inputs.front());
+    const Value before = element.inputs.empty() ? Value{} : input_value(element, element.inputs.front());
+    if (before.text.empty()) {
+      return {};
+    }
+    if (!may_be_bool(own) || !may_be_bool(before)) {
+      refuse(element, "it takes a BOOL", "Compare the value first, by GT or NE.");
+    }
     return before.text == "TRUE" ? own : Value{fmt::format("({} AND {})", before.text, own.text), Type::Bool};
   }
 
   /// Read before it is worked out, a function's result is the last cycle's.
-  Value function_value(std::size_t index) {
+  Value function_value(std::size_t index, const std::string& pin) {
     State& state = states_[index];
     const DrawnElement& element = pou_.elements[index];
+    const bool has_pin =
+        pin.empty() || element.outputs.empty() ||
+        std::ranges::any_of(element.outputs, [&](const DrawnPin& one) { return equal_ignoring_case(one.name, pin); });
+    if (!has_pin || equal_ignoring_case(pin, "ENO")) {
+      refuse(element, has_pin ? "its ENO is read" : fmt::format("a wire leaves its output {}, which it has not", pin),
+             "Connect the wire to its result.");
+      return {"FALSE", std::nullopt};
+    }
     if (state.done) {
       return state.value;
     }
@@ -330,12 +379,12 @@ class Reader {
   }
 
   Value output_value(const DrawnElement& element, const std::string& pin) {
-    const auto negation =
+    const auto drawn =
         std::ranges::find_if(element.outputs, [&](const DrawnPin& one) { return equal_ignoring_case(one.name, pin); });
     const std::string& name = !pin.empty() ? pin : !element.outputs.empty() ? element.outputs.front().name : pin;
     Value value = pin_value(element, element.instance, name);
-    if (negation != element.outputs.end() && negation->negated) {
-      value.text = negated(value.text);
+    if (drawn != element.outputs.end() && drawn->negated) {
+      value.text = negation(element, value);
     }
     return value;
   }

@@ -125,10 +125,31 @@ class TwincatImport {
     refuse_hidden(file, pou, declaration, declaration + "\n" + statements);
     const std::string ending = "END_" + in_capitals(kind->text);
     if (equal_ignoring_case(kind->text, "FUNCTION_BLOCK")) {
-      const bool timed = is_first && !options_.cycle.empty();
-      declaration.insert(its_name->end, timed ? fmt::format(" (* @ts {} @body *)", options_.cycle) : " (* @body *)");
+      annotate(declaration, its_name->end, is_first ? options_.cycle : "");
     }
     append(without_lists(declaration + "\n" + statements) + "\n" + ending);
+  }
+
+  /// Behind the name of a block: that its text is a body, and its sample time. A text of our own says both already.
+  static void annotate(std::string& declaration, std::size_t place, const std::string& cycle) {
+    std::string kept;
+    const std::size_t begin = declaration.find_first_not_of(" \t\r\n", place);
+    const std::size_t end = begin == std::string::npos ? begin : declaration.find("*)", begin);
+    if (begin != std::string::npos && end != std::string::npos && declaration.compare(begin, 2, "(*") == 0) {
+      std::string own = declaration.substr(begin + 2, end - begin - 2);
+      if (const auto first = own.find_first_not_of(' '); first != std::string::npos && own[first] == '@') {
+        for (std::size_t at = own.find('@'); at != std::string::npos;) {
+          const std::size_t next = own.find('@', at + 1);
+          std::string one = own.substr(at, next == std::string::npos ? next : next - at);
+          one.erase(one.find_last_not_of(" \t\r\n") + 1);
+          const bool stated = one == "@body" || (one.starts_with("@ts") && !cycle.empty());
+          kept += stated ? "" : " " + one;
+          at = next;
+        }
+        declaration.erase(place, end + 2 - place);
+      }
+    }
+    declaration.insert(place, fmt::format(" (*{} @body{} *)", cycle.empty() ? "" : " @ts " + cycle, kept));
   }
 
   /// What a text names and the project has, before the text itself.

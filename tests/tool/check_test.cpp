@@ -133,4 +133,21 @@ TEST(Fmt, AFileWithSyntaxErrorsStays) {
 }
 
 }  // namespace
+/// A body has a layout of its own: the diagrams beside it are not formatted either, which nobody should have to guess.
+TEST(Fmt, AFileWithASequentialBodyStaysAndThatIsSaid) {
+  const test::Workbench bench;
+  const std::string body =
+      "FUNCTION_BLOCK COUNTS (* @body @ts 1ms *)\nVAR_INPUT GO : BOOL; END_VAR\nVAR_OUTPUT N : DINT; END_VAR\n"
+      "IF GO THEN N := N + 1; END_IF;\nEND_FUNCTION_BLOCK\n";
+  bench.write("body.st", body);
+  bench.write("both.st", body + std::string("FUNCTION_BLOCK P (* @ts 1ms *)\nVAR_INPUT X:LREAL; END_VAR\n"
+                                            "VAR_OUTPUT Y:LREAL; END_VAR\nY:=X;\nEND_FUNCTION_BLOCK\n"));
+  const auto alone = bench.shell("hysteron fmt body.st");
+  EXPECT_EQ(alone.code, 0);
+  EXPECT_EQ(alone.err, "note: body.st: COUNTS has a sequential body, so the file is left as it stands\n");
+  const auto both = bench.shell("hysteron fmt --check both.st");
+  EXPECT_EQ(both.code, 0);
+  EXPECT_THAT(both.err, HasSubstr("in a file of their own its diagrams are formatted"));
+}
+
 }  // namespace hysteron

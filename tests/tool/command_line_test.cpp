@@ -165,6 +165,18 @@ TEST(CommandLine, FilesThatAreNotThere) {
   EXPECT_EQ(run.err, outcome.out);
 }
 
+/// It had written the file, and then told what is wrong with it.
+TEST(CommandLine, AnImportWithoutASampleTimeWritesNothing) {
+  const test::Workbench bench;
+  bench.write("drawing.xml", "<project/>");
+  for (const std::string time : {"0ms", "-1ms", "soon"}) {
+    const auto outcome = bench.shell("hysteron import drawing.xml --ts " + time + " --out made.st");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(time + " is no sample time.")) << outcome.err;
+    EXPECT_FALSE(bench.has("made.st"));
+  }
+}
+
 TEST(CommandLine, AClosedPipeIsNoCrash) {
   const test::Workbench bench;
   const auto outcome = bench.shell("(hysteron blocks --markdown; echo $? > code) | head -n 1; cat code");

@@ -254,6 +254,24 @@ TEST_F(Run, ReadsEveryWholeNumberOf32Bits) {
   }
 }
 
+/// An input of a body takes what its type takes: 70000 as an INT had been 4464.
+TEST_F(Run, AnInputTakesTheWholeNumbersOfItsDeclaredType) {
+  bench.write("body.st",
+              "FUNCTION_BLOCK B (* @ts 1ms @body *)\n  VAR_INPUT I : INT; K : BYTE; S : USINT; U : UDINT; END_VAR\n"
+              "  VAR_OUTPUT M : INT; V : UDINT; BIG : BOOL; END_VAR\n"
+              "  IF K > 0 OR S > 0 THEN M := I; END_IF; V := U; BIG := U > 3999999999;\nEND_FUNCTION_BLOCK\n");
+  bench.write("body.csv", "t,I,K,S,U\n0,-32768,255,0,4000000000\n0.001,32767,0,255,-294967296\n0.002,0,0,0,0\n");
+  const auto outcome = bench.shell("hysteron run body.st --in body.csv --out -");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "t,M,V,BIG\n0,-32768,-294967296,1\n0.001,32767,-294967296,1\n0.002,32767,0,0\n");
+  for (const std::string beyond : {"70000,0,0,0", "0,300,0,0", "0,0,-5,0", "0,0,0,4294967296"}) {
+    bench.write("body.csv", "t,I,K,S,U\n0," + beyond + "\n0.001,0,0,0,0\n0.002,0,0,0,0\n");
+    EXPECT_THAT(bench.shell("hysteron run body.st --in body.csv --out -").err,
+                AllOf(HasSubstr("HY707"), HasSubstr("takes whole numbers from ")))
+        << beyond;
+  }
+}
+
 TEST_F(Run, NamesPlacesInTheStandardInput) {
   const auto outcome = bench.shell("printf 't,x\\n0,1\\n0.001,11\\n' | hysteron run plant.st --in - --out out.csv");
   EXPECT_EQ(outcome.code, 0);

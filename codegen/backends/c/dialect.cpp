@@ -189,23 +189,28 @@ static int32_t wrap(int64_t x) {{
 }}
 )"},
     CHelper{"int_and", R"(static int32_t int_and(int32_t a, int32_t b) {{
-  return wrap((int64_t)((uint32_t)a & (uint32_t)b));
+  const uint32_t bits = (uint32_t)a & (uint32_t)b;
+  return wrap((int64_t)bits);
 }}
 )"},
     CHelper{"int_or", R"(static int32_t int_or(int32_t a, int32_t b) {{
-  return wrap((int64_t)((uint32_t)a | (uint32_t)b));
+  const uint32_t bits = (uint32_t)a | (uint32_t)b;
+  return wrap((int64_t)bits);
 }}
 )"},
     CHelper{"int_xor", R"(static int32_t int_xor(int32_t a, int32_t b) {{
-  return wrap((int64_t)((uint32_t)a ^ (uint32_t)b));
+  const uint32_t bits = (uint32_t)a ^ (uint32_t)b;
+  return wrap((int64_t)bits);
 }}
 )"},
     CHelper{"int_shift_left", R"(static int32_t int_shift_left(int32_t a, int32_t places) {{
-  return wrap((int64_t)((uint32_t)a << (uint32_t)places));
+  const uint32_t bits = (uint32_t)a << (uint32_t)places;
+  return wrap((int64_t)bits);
 }}
 )"},
     CHelper{"int_shift_right", R"(static int32_t int_shift_right(int32_t a, int32_t places) {{
-  return wrap((int64_t)((uint32_t)a >> (uint32_t)places));
+  const uint32_t bits = (uint32_t)a >> (uint32_t)places;
+  return wrap((int64_t)bits);
 }}
 )"},
     CHelper{"int_to_word", R"(// The lower 16 bits.

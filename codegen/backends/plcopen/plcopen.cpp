@@ -77,23 +77,31 @@ Pou caller_of(const plcopen::Network& network) {
   return caller;
 }
 
-/// A wire of a network carries one value: a vector is its elements there, X_0 of X[0]. A block whose pins are vectors has
-/// none of the library to stand for it.
-void refuse_sized_blocks(const Program& program) {
+/// A wire of a network carries one value: a vector is its elements there, X_0 of X[0]. A block whose pins are vectors
+/// has none of the library to stand for it. Steps of a sequential body are no wires at all.
+void refuse_what_is_no_wire(const Program& program) {
   Diagnostics diagnostics;
   Diagnostics ignored;
   const Definitions definitions = define(program.graph.source, ignored);
   const plcopen::KnownValues values(program, definitions);
   for (const std::uint32_t index : definitions.callees_first) {
     const Definition& definition = definitions.list[index];
-    const auto found = std::ranges::find_if(definition.variables, [](const Declared& one) {
-      return one.block != nullptr && one.block->sized != nullptr;
-    });
-    if (values.is_used(index) && found != definition.variables.end()) {
+    if (!values.is_used(index)) {
+      continue;
+    }
+    const language::Name& name = definition.block->name;
+    if (definition.block->sequential) {
+      diagnostics.error(error::no_network, definitions.source->place(name.span),
+                        fmt::format("'{}' has a sequential body, and a network has wires alone", name.text),
+                        "Generate with --body st.");
+      continue;
+    }
+    const auto found = std::ranges::find_if(
+        definition.variables, [](const Declared& one) { return one.block != nullptr && one.block->sized != nullptr; });
+    if (found != definition.variables.end()) {
       diagnostics.error(
           error::no_network, definitions.source->place(found->variable->name.span),
-          fmt::format("'{}' has a block that takes its sizes from lists, {}", definition.block->name.text,
-                      found->variable->name.text),
+          fmt::format("'{}' has a block that takes its sizes from lists, {}", name.text, found->variable->name.text),
           "Generate with --body st: a wire of a network carries one value.");
     }
   }
@@ -104,7 +112,7 @@ void refuse_sized_blocks(const Program& program) {
 
 void add_networks(const Program& program, const PlcopenOptions& options, const StOptions& text,
                   plcopen::Project& project) {
-  refuse_sized_blocks(program);
+  refuse_what_is_no_wire(program);
   plcopen::Networks made =
       plcopen::make_networks(program, {.float32 = options.float32, .small_literals = text.dialect.small_literals});
   plcopen::take_places(options.place(plcopen::placing_dot(made.list)), made.list);

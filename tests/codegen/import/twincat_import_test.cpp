@@ -81,6 +81,21 @@ TEST(TwincatImport, ABlockComesWithAllThatItNamesAndCompiles) {
   ASSERT_EQ(program.graph.outputs.size(), 1U);
 }
 
+/// What generate --structured wrote says already that its text is a body, and how often it runs.
+TEST(TwincatImport, AnnotationsOfATextOfOurOwnAreSaidOnce) {
+  const auto block = [](const std::string& head) {
+    return imported(
+        object("POU", "OWN",
+               "(* generated *)\r\nFUNCTION_BLOCK OWN" + head + "\r\nVAR_OUTPUT\r\n\tN : DINT;\r\nEND_VAR\r\n",
+               in_st("N := N + 1;")),
+        {});
+  };
+  EXPECT_THAT(block("  (* @body @ts 100000000ns *)"), HasSubstr("FUNCTION_BLOCK OWN (* @ts 10ms @body *)\n"));
+  EXPECT_THAT(block(" (* @body @doc counts *)"), HasSubstr("FUNCTION_BLOCK OWN (* @ts 10ms @body @doc counts *)\n"));
+  EXPECT_THAT(block(" (* counts *)"), HasSubstr("FUNCTION_BLOCK OWN (* @ts 10ms @body *) (* counts *)\n"));
+  EXPECT_EQ(compile_text(block("  (* @body @ts 100000000ns *)")).graph.sample_time_ns, 10'000'000);
+}
+
 /// Of a list come the variables that are named, and what these name.
 TEST(TwincatImport, GlobalVariablesComeWithTheBlock) {
   const std::string list = object(

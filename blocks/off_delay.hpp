@@ -14,7 +14,8 @@ struct OffDelay : Timer {
       .meaning =
           "Q rises with IN and falls only once IN has been FALSE for PT: a fan that runs on. With PT = n·TS, Q falls "
           "exactly n steps after IN; with PT = 0 at once. It starts FALSE, with ET = 0, until IN has been TRUE. "
-          "PT may change while the timer runs; once Q is FALSE, it stays so until IN is TRUE.",
+          "PT may change while the timer runs; once Q is FALSE, it stays so until IN is TRUE, and ET is the PT of the "
+          "step.",
       .source = "IEC 61131-3, TOF"};
 
   template <class S>

@@ -15,7 +15,7 @@ struct OnDelay : Timer {
           "Q follows IN, but rises only once IN has been TRUE for PT. With PT = n·TS, Q rises "
           "exactly n steps after IN, also where n·TS cannot be represented; with PT = 0 it "
           "rises at once. ET is 0 while IN is FALSE. PT may change while the timer runs; once Q is "
-          "TRUE, it stays so until IN is FALSE.",
+          "TRUE, it stays so until IN is FALSE, and ET is the PT of the step.",
       .source = "IEC 61131-3, TON"};
 
   template <class S>

@@ -13,9 +13,9 @@ struct PulseTimer : Timer {
       .equation = "Q = n·TS < PT, ET = min(n·TS, PT), n = steps since the rise of IN that began the pulse",
       .meaning =
           "A rise of IN begins a pulse at Q that lasts exactly PT, whatever IN does meanwhile; a rise during the pulse "
-          "does not lengthen it. ET stays at PT until IN is FALSE, and is 0 then. With PT = 0 there is no pulse. PT "
-          "may "
-          "change while the pulse lasts; one that is over does not come back.",
+          "does not lengthen it. Behind it, ET is the PT of the step until IN is FALSE, and is 0 then. With PT = 0 "
+          "there "
+          "is no pulse. PT may change while the pulse lasts; one that is over does not come back.",
       .source = "IEC 61131-3, TP"};
 
   template <class S>

@@ -71,6 +71,17 @@ TEST(OnDelay, ElapsesAfterExactlyNSteps) {
   }
 }
 
+/// The count of a timer that has ended says no more when it did: ET is the PT of the step, as the description says.
+TEST(OnDelay, BehindItsEndTheElapsedTimeIsThePresetOfTheStep) {
+  Stepper<OnDelay> timer(0.1);
+  for (int k = 0; k < 4; ++k) {
+    (void)timer({.IN = true, .PT = 0.2});
+  }
+  const auto out = timer({.IN = true, .PT = 30.0});
+  EXPECT_TRUE(out.Q);
+  EXPECT_EQ(out.ET, 30.0);
+}
+
 TEST(OnDelay, InterruptionStartsAgain) {
   Stepper<OnDelay> timer(1.0);
   for (int k = 0; k < 10; ++k) {

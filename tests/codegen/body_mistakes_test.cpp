@@ -106,7 +106,7 @@ TEST(BodyMistakes, ARealLiteralTakesTheTypeOfItsTarget) {
 }
 
 TEST(BodyMistakes, ADivisionByALiteralZeroIsToldAndNotGenerated) {
-  for (const char* const statement : {"Y := X / 0;", "D := D MOD 0;", "Y := X / (1 - 1);"}) {
+  for (const char* const statement : {"Y := X / 0;", "D := D MOD 0;", "RR := RR / 0.0;", "Y := X / (1 - 1);"}) {
     const std::string text = with_ports(statement);
     EXPECT_EQ(faults_of(text), Faults{fmt::format("{}:3", error::other_meaning_elsewhere)}) << statement;
     const std::string generated = generate_st(compile_text(text), {}).front().text;
@@ -170,7 +170,7 @@ TEST(BodyMistakes, AnInitialValueLiesWithinItsType) {
   EXPECT_NE(of("U : WORD := -1"), "");
   EXPECT_EQ(of("U : UINT := 65535"), "");
   EXPECT_EQ(of("U : REAL := 1.0e60"), "U is REAL, which does not hold 1e+60");
-  EXPECT_EQ(of("U : REAL := 3.0e38"), "");
+  EXPECT_EQ(of("U : REAL := 3.4028235e38"), "");
   EXPECT_NE(told(with_ports("W := -1;")), "");
 }
 
@@ -188,6 +188,20 @@ TEST(BodyMistakes, WordsOfTheLanguageAndOfOthersAreNamed) {
             "VAR_STAT is shared by all instances of the block.");
   EXPECT_EQ(one_result("D := SEL(B AND_THEN X > 2, 1, 2);"), 2);
   EXPECT_EQ(one_result("D := SEL(X > 5 OR_ELSE NOT B AND_THEN Q, 1, 2);"), 1);
+}
+
+TEST(BodyMistakes, AnUnderscoreAtTheEndOfANameIsLeftOutOfStructuredText) {
+  const std::string text =
+      generate_st(compile_text("FUNCTION_BLOCK F_ (* @ts 10ms @body *) VAR_INPUT Stop_ : INT; INT_ : INT; END_VAR "
+                               "VAR_OUTPUT a__b : INT; END_VAR a__b := Stop_ + INT_; END_FUNCTION_BLOCK"),
+                  {})
+          .front()
+          .text;
+  for (const char* const line :
+       {"Stop_ is called STOP: IEC 61131-3 has single underscores, and none at the end of a name.",
+        "INT_ is called INT_2", "a__b is called A_B", "F_ is called F:", "FUNCTION_BLOCK F\n", "STOP : DINT;"}) {
+    EXPECT_NE(text.find(line), std::string::npos) << line << text;
+  }
 }
 
 }  // namespace

@@ -34,6 +34,9 @@ void append_identifier(std::string& text, std::initializer_list<std::string_view
       before = letter;
     }
   }
+  if (letter_case == LetterCase::Upper && text.size() > 1 && text.back() == '_') {  // IEC 61131-3 has none at the end
+    text.pop_back();
+  }
   if (text.empty() || is_digit(text.front())) {
     text.insert(0, "_");
   }

@@ -24,6 +24,10 @@ void StWriter::define_quotient(const Value& value, const std::string& name, std:
   } else {
     printer_.print_call("SEL", {"G", "IN0", "IN1"}, {above + " < " + zero, positive, lowest}, limit);
   }
+  if (const Value& divisor = routine.tape[value.args[1]]; divisor.op == Op::RealLiteral && divisor.literal == 0.0) {
+    append(text, fmt::format("{} := {};\n", name, limit));  // MATIEC refuses a division by a literal 0
+    return;
+  }
   std::string begin = "IF";
   if (printer_.guards().may_be_infinite(value.args[1])) {
     append(text, fmt::format("IF {} >= {} THEN {} := {} * {};\n", below, largest, name, zero, above));
@@ -38,6 +42,10 @@ void StWriter::define_integer_quotient(const Value& value, const std::string& na
   const std::string above = printer_.text(value.args[0], Strength::Primary);
   const std::string below = printer_.text(value.args[1], Strength::Primary);
   const bool quotient = value.op == Op::IntDivide;
+  if (const Value& divisor = routine.tape[value.args[1]]; divisor.op == Op::IntLiteral && divisor.literal == 0.0) {
+    append(text, fmt::format("{} := 0;\n", name));  // MATIEC refuses a division by a literal 0
+    return;
+  }
   append(text, fmt::format("IF {} = 0 THEN {} := 0;\n", below, name));
   line(fmt::format("ELSIF {} = -1 THEN {} := {};", below, name, quotient ? "0 - " + above : "0"), text);
   line(fmt::format("ELSE {} := {} {} {}; END_IF;", name, above, quotient ? "/" : "MOD", below), text);

@@ -18,8 +18,10 @@ std::string_view StBlockNames::keep(std::string_view name) {
   const std::string_view kept = identifiers_.make({name});
   const bool plain = element_of(name) && language::same_name(kept, identifier_text({name}, LetterCase::Upper));
   if (!plain && !language::same_name(kept, name)) {  // of a vector of one element X[0] is X_0, as a matter of course
-    renamed_ +=
-        fmt::format("   {} is called {}: its name is taken, or some compiler keeps it for itself.\n", name, kept);
+    const bool odd = name.ends_with('_') || name.find("__") != std::string_view::npos;
+    renamed_ += fmt::format("   {} is called {}: {}.\n", name, kept,
+                            odd ? "IEC 61131-3 has single underscores, and none at the end of a name"
+                                : "its name is taken, or some compiler keeps it for itself");
   }
   return kept;
 }

@@ -175,8 +175,9 @@ Value Computer::assignable(const Value& value, Plain type, const std::string& ta
     }
     return reaches ? fit(value, type) : mismatch(value.loose ? "Write a number within its range." : conversion);
   }
+  constexpr double past_real = 3.4028235677973366e38;  // what is below rounds to the greatest REAL
   if (double number = 0.0; type == Plain::Real && value.loose && constant(value, number) && std::isfinite(number) &&
-                           std::abs(number) > static_cast<double>(std::numeric_limits<float>::max())) {
+                           std::abs(number) >= past_real) {
     return refused(error::number_out_of_range, fmt::format("{} is REAL, which does not hold {}", target, number),
                    "It reaches from -3.4e38 to 3.4e38: make it LREAL.");
   }

@@ -81,7 +81,7 @@ std::string text_below(xml_node top) {
     if (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata) {
       text += node.value();
     }
-    if (node.first_child()) {
+    if (!node.first_child().empty()) {
       node = node.first_child();
       continue;
     }
@@ -210,7 +210,7 @@ class ProjectReader {
         read_variables(list, Section::Both, pou);
       } else if (name == tc6::local_vars || name == tc6::temporary_vars) {
         read_variables(list, list.attribute(tc6::constant).as_bool() ? Section::Constant : Section::Local, pou);
-      } else if (name.ends_with("Vars") && list.first_child()) {
+      } else if (name.ends_with("Vars") && !list.first_child().empty()) {
         throw refusal(line_of(list), fmt::format("{} has {}, which no diagram has", pou.name, name),
                       "Make them inputs and outputs of the POU.", error::untranslatable_element);
       }

@@ -293,7 +293,7 @@ class HeadReader {
       }
       before = number.number;
     }
-    layout_.notes.push_back("each row begins with its number, which has no name");
+    layout_.notes.emplace_back("each row begins with its number, which has no name");
     return 1;
   }
 
@@ -323,7 +323,7 @@ class HeadReader {
       }
       if (cells.size() == cells_in_row_ && begins_with_text(cells)) {
         take_names(cells, line);
-        layout_.notes.push_back("the names stand in a remark above the numbers");
+        layout_.notes.emplace_back("the names stand in a remark above the numbers");
       }
       return;
     }
@@ -421,6 +421,7 @@ class HeadReader {
 /// u:1.0,y:3.0: each row says the names.
 void take_names_of_cells(const std::vector<Cell>& cells, TextLayout& layout) {
   std::vector<TextLayout::Name> names;
+  names.reserve(cells.size());
   for (const Cell& cell : cells) {
     names.push_back({.name = std::string(cell_value(cell.text).label)});
   }

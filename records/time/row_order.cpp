@@ -122,7 +122,7 @@ bool settle_rows(Table& table, std::span<const double> seconds, const ReadOption
       kept.push_back(k);
     }
     keep_rows(table, kept);
-    table.notes.push_back("the rows stand in the order newest first, and were turned round");
+    table.notes.emplace_back("the rows stand in the order newest first, and were turned round");
     return true;
   }
   if (join_parts(table, seconds)) {

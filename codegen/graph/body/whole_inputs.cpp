@@ -36,7 +36,7 @@ std::vector<std::optional<WholeInput>> whole_inputs(const Graph& graph) {
   GraphBuilder builder(scratch);
   Body body(*graph.source->bodies, graph.source->bodies->units[block->body],
             {.builder = builder,
-             .report = [](int, language::Span, std::string, std::string) {},
+             .report = [](int, language::Span, const std::string&, const std::string&) {},
              .add_parameter = [](const auto&) { return Wire{}; }});
   for (const BorderPort& port : body.ports(false)) {
     for (std::size_t i = 0; i < result.size(); ++i) {

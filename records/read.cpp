@@ -73,7 +73,7 @@ std::string stepping_signal(const Table& table, const Times& times) {
   bool has_others = false;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const TableColumn& column = table.columns[i];
-    if (std::ranges::find(times.used, i) != times.used.end() || column.kind != CellKind::Number) {
+    if (times.uses(i) || column.kind != CellKind::Number) {
       continue;
     }
     const bool steps = std::ranges::all_of(column.values, [](double value) { return value == std::round(value); });

@@ -118,7 +118,7 @@ void ResampledColumns::state_ways() {
                                     : fmt::format("did you mean {}?", option_of(near, one.way)));
     }
     for (const std::size_t i : meant) {
-      if (std::ranges::find(times_.used, i) != times_.used.end()) {
+      if (times_.uses(i)) {
         throw InputError(error::bad_usage, table_.columns[i].place,
                          fmt::format("{} is the time, which is no signal to be resampled.", table_.columns[i].name),
                          "name a signal, or leave this --resample out.");

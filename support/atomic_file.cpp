@@ -35,8 +35,7 @@ std::string mend_of_machine(int reason) {
     return "let more files be open: `ulimit -n` says how many, and LimitNOFILE= of a service";
   }
   return is_trouble_of_disk(reason) ? "see to the disk: one that could be written before and is read-only now has had "
-                                      "an error, and dmesg names "
-                                      "it"
+                                      "an error, and dmesg names it"
                                     : "";
 }
 

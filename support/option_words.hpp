@@ -23,11 +23,11 @@ enum class OptionForm : std::uint8_t {
   Text,
   Number,
   Flag,
-  Pair,      ///< NAME=VALUE, in an object
+  Pair,        ///< NAME=VALUE, in an object
   TextOrPair,  ///< VALUE as a text, or NAME=VALUE in an object
-  List,      ///< an element of a list
-  Argument,  ///< an argument of the function, and no option
-  None       ///< not at all: what it is for can be done with the tool
+  List,        ///< an element of a list
+  Argument,    ///< an argument of the function, and no option
+  None         ///< not at all: what it is for can be done with the tool
 };
 
 struct LibraryOption {

@@ -79,10 +79,7 @@ void check_head(const std::vector<std::string>& paths, const Place& place) {
 }
 
 Table table_of_file(const std::string& file) {
-  std::string text = read_text_file(file);
-  if (text.starts_with(byte_order_mark)) {
-    text.erase(0, byte_order_mark.size());
-  }
+  const std::string text = without_mark(read_text_file(file));
   Table table;
   char separator = ',';
   std::uint32_t line_number = 0;

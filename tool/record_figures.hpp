@@ -17,9 +17,10 @@ struct NamedRecord {
   records::Record record;
 };
 
-/// Each column over time in a panel of its own, with a gap where rows are missing, the same column of several records together. Of two records with the
-/// same times, what the second has more than the first is a panel below. Units of the second are brought to those of
-/// the first. Throws InputError: HY502 for a chosen column that none has, HY729 where units of two do not meet.
+/// Each column over time in a panel of its own, with a gap where rows are missing, the same column of several records
+/// together. Of two records with the same times, what the second has more than the first is a panel below. Units of the
+/// second are brought to those of the first. Throws InputError: HY502 for a chosen column that none has, HY729 where
+/// units of two do not meet.
 [[nodiscard]] plots::Figure figure_over_time(std::span<const NamedRecord> records,
                                              const std::vector<std::string>& chosen = {});
 

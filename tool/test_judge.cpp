@@ -11,8 +11,8 @@
 #include "tool/compiled.hpp"
 #include "tool/output_record.hpp"
 #include "tool/test_plot.hpp"
-#include "tuning/record_units.hpp"
 #include "tuning/record_options.hpp"
+#include "tuning/record_units.hpp"
 #include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {

@@ -56,7 +56,7 @@ std::int64_t find_port(const std::vector<Port>& ports, const TestSignal& signal,
 void check_types(const TestSignal& signal, const Port& port, const std::optional<bodies::WholeInput>& whole,
                  const Signal& values, Diagnostics& diagnostics) {
   for (const double value : values) {
-    const auto fault = whole ? bodies::whole_fault(*whole, value) : type_fault(port.type, value);
+    const auto fault = input_fault(port, whole, value);
     if (!fault.empty()) {
       diagnostics.error(error::wrong_test_value, signal.value_place,
                         fmt::format("{} {}, not {}.", port.name, fault, number_text(value)),
@@ -220,9 +220,7 @@ class CasePlan {
       }
       given[index] = signal_of(signal);
       check_types(signal, graph().inputs[index], wholes[index], given[index], diagnostics_);
-      for (double& value : given[index]) {
-        value = wholes[index] ? bodies::carried(*wholes[index], value) : value;
-      }
+      bodies::carry(wholes[index], given[index]);
     }
     if (record_) {
       planned_.drive = drive_from(*record_, planned_.program, std::move(given), diagnostics_);

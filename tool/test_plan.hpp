@@ -27,7 +27,7 @@ struct PlannedCase {
   Drive drive{};
   std::vector<double> time{};
   std::vector<ExpectedOutput> expected{};
-  std::filesystem::path golden{};  ///< empty: none
+  std::filesystem::path golden{};                            ///< empty: none
   std::vector<std::pair<std::string, std::string>> notes{};  ///< what was understood of its record: file, sentence
 };
 

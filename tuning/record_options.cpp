@@ -117,10 +117,6 @@ void take_range(const RecordOptions& options, records::ReadOptions& result) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// The name before the equals sign: that of U=MAIN.u, of Q=hold; nothing of hold, which says it of all.
 std::string_view name_before(std::string_view text) {
   const auto equals = text.find('=');

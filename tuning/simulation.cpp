@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
-#include "codegen/graph/body/whole_inputs.hpp"
 #include "codegen/graph/defaults.hpp"
 #include "records/time/time_grid.hpp"
 #include "records/time/time_unit.hpp"
@@ -34,7 +32,7 @@ void check_values(const Port& input, const std::optional<bodies::WholeInput>& wh
   double most_beyond = 0.0;
   double farthest = 0.0;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    const auto fault = whole ? bodies::whole_fault(*whole, values[k]) : type_fault(input.type, values[k]);
+    const auto fault = input_fault(input, whole, values[k]);
     if (!fault.empty()) {
       diagnostics.error(error::unfit_value, record.place(input.name, k),
                         fmt::format("The column {} is {} at t = {} s, but the input {}.", input.name,
@@ -103,6 +101,10 @@ std::string type_fault(Type type, double value) {
   return {};
 }
 
+std::string input_fault(const Port& input, const std::optional<bodies::WholeInput>& whole, double value) {
+  return whole ? bodies::whole_fault(*whole, value) : type_fault(input.type, value);
+}
+
 Drive drive_from(const records::Record& record, const Program& program, std::vector<Signal> given,
                  Diagnostics& diagnostics) {
   const Graph& graph = program.graph;
@@ -117,9 +119,7 @@ Drive drive_from(const records::Record& record, const Program& program, std::vec
     if (const records::Column* const column = record.find(input.name)) {
       drive.inputs[i] = column->values;
       check_values(input, wholes[i], column->values, record, diagnostics);
-      for (double& value : drive.inputs[i]) {
-        value = wholes[i] ? bodies::carried(*wholes[i], value) : value;
-      }
+      bodies::carry(wholes[i], drive.inputs[i]);
     } else if (has_default(graph, input)) {
       drive.inputs[i] = {input.preset};
     } else {

@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "codegen/compile.hpp"
+#include "codegen/graph/body/whole_inputs.hpp"
 #include "records/record.hpp"
 #include "support/diagnostic.hpp"
 
@@ -32,8 +34,11 @@ struct Drive {
 [[nodiscard]] Drive drive_from(const records::Record& record, const Program& program, std::vector<Signal> given,
                                Diagnostics& diagnostics);
 
-/// Why an input cannot take a value, as `takes 0 or 1`; empty where it can.
+/// Why a type of the graph cannot take a value, as `takes 0 or 1`; empty where it can.
 [[nodiscard]] std::string type_fault(Type type, double value);
+
+/// The same of an input, by the type that a sequential body declares where that is narrower.
+[[nodiscard]] std::string input_fault(const Port& input, const std::optional<bodies::WholeInput>& whole, double value);
 
 /// Holds the sample time of a record against that of a diagram, allowing for what printing took from the times.
 /// Where the diagram states none, it takes the record's. Reports HY704.

@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "codegen/import/global_list.hpp"
+#include "codegen/language/annotation.hpp"
 #include "codegen/language/lexer.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
+#include "support/trimmed.hpp"
 
 namespace hysteron {
 
@@ -134,17 +136,19 @@ class TwincatImport {
   static void annotate(std::string& declaration, std::size_t place, const std::string& cycle) {
     std::string kept;
     const std::size_t begin = declaration.find_first_not_of(" \t\r\n", place);
-    const std::size_t end = begin == std::string::npos ? begin : declaration.find("*)", begin);
-    if (begin != std::string::npos && end != std::string::npos && declaration.compare(begin, 2, "(*") == 0) {
-      std::string own = declaration.substr(begin + 2, end - begin - 2);
-      if (const auto first = own.find_first_not_of(' '); first != std::string::npos && own[first] == '@') {
-        for (std::size_t at = own.find('@'); at != std::string::npos;) {
-          const std::size_t next = own.find('@', at + 1);
-          std::string one = own.substr(at, next == std::string::npos ? next : next - at);
-          one.erase(one.find_last_not_of(" \t\r\n") + 1);
-          const bool stated = one == "@body" || (one.starts_with("@ts") && !cycle.empty());
-          kept += stated ? "" : " " + one;
-          at = next;
+    const std::size_t end = declaration.find("*)", begin);
+    if (end != std::string::npos && declaration.compare(begin, 2, "(*") == 0) {
+      const language::Span comment{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end + 2 - begin)};
+      const auto own = language::annotations_of(declaration, comment);
+      const std::string_view text(declaration);
+      if (!own.empty() && own.front().span.offset == text.find_first_not_of(' ', begin + 2)) {
+        for (std::size_t i = 0; i < own.size(); ++i) {
+          const language::Span& one = own[i].span;
+          const bool stated = own[i].key == "body" || (own[i].key == "ts" && !cycle.empty());
+          const std::size_t from = stated ? one.offset + one.length : one.offset;
+          const std::size_t next = i + 1 < own.size() ? own[i + 1].span.offset : end;
+          const std::string_view rest = trimmed(text.substr(from, next - from), " \t\r\n");
+          kept += (rest.empty() ? "" : " ") + std::string(rest);
         }
         declaration.erase(place, end + 2 - place);
       }

@@ -56,8 +56,7 @@ std::string budget_section(const Diagnosis& diagnosis) {
       "<section class=\"budget\"><h2>The gap by kind of function</h2>\n"
       "<p>Functions of the measured signals close <strong>{}</strong> of the gap at {} on stretches that their fit did "
       "not see. No name of an effect was needed for that. {} stays open, whatever the kind.{} Kinds overlap, so what "
-      "they "
-      "close alone does not add up.</p>\n"
+      "they close alone does not add up.</p>\n"
       "<table><thead><tr><th>kind</th><th>its part, 100 % in all</th><th class=\"number\">closes alone</th>"
       "<th class=\"number\">nothing else closes</th></tr></thead><tbody>\n{}</tbody></table>\n</section>\n",
       percent(budget.closed), escaped(budget.at), percent(open), noise, rows);

@@ -157,8 +157,8 @@ class Screening : private TriedEffect {
   struct Move {
     VectorXd values{};
     Index parameter = 0;
-    bool is_of_shape = false;           ///< a new shape, whose strengths are taken anew: the output is linear in them
-    std::optional<Promise> promised{};  ///< of that shape
+    std::optional<Promise>
+        promised{};  ///< of a new shape, whose strengths are taken anew: the output is linear in them
   };
 
   /// One parameter moved along its grid, the others where they are.
@@ -182,23 +182,23 @@ class Screening : private TriedEffect {
   /// What straight lines promise of all moves at once, so that the points they ask for can be run side by side.
   void prepare(std::vector<Move>& moves) {
     std::vector<VectorXd> shapes;
+    std::vector<Move*> of_shapes;
+    std::vector<VectorXd> first;
     for (Move& move : moves) {
-      const VectorXd shape = shape_of(move.values);
-      move.is_of_shape = !parameter(move.parameter).strength && is_linear_there(shape);
-      if (move.is_of_shape) {
-        shapes.push_back(shape);
+      VectorXd shape = shape_of(move.values);
+      if (!parameter(move.parameter).strength && is_linear_there(shape)) {
+        shapes.push_back(std::move(shape));
+        of_shapes.push_back(&move);
+      } else {
+        first.push_back(move.values);
       }
     }
     foresee_changes(shapes);
-    std::vector<VectorXd> first;
-    for (Move& move : moves) {
-      if (!move.is_of_shape) {
-        first.push_back(move.values);
-        continue;
-      }
-      move.promised = promised(shape_of(move.values), strengths(), true);
-      if (move.promised && !move.promised->settings.empty()) {
-        first.push_back(move.promised->settings.front());
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      std::optional<Promise>& promise = of_shapes[i]->promised;
+      promise = promised(shapes[i], strengths(), true);
+      if (promise && !promise->settings.empty()) {
+        first.push_back(promise->settings.front());
       }
     }
     foresee(first);

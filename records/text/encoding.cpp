@@ -159,10 +159,7 @@ void settle_line_ends(std::string& text) {
 
 DecodedText decoded_bytes(const std::string& file, std::string bytes) {
   if (const auto order = utf16_order(bytes)) {
-    DecodedText result{.text = from_utf16(bytes, *order), .encoding = "UTF-16"};
-    if (result.text.starts_with(byte_order_mark)) {
-      result.text.erase(0, byte_order_mark.size());
-    }
+    DecodedText result{.text = without_mark(from_utf16(bytes, *order)), .encoding = "UTF-16"};
     if (const auto bad = first_control(result.text); bad != std::string_view::npos) {
       refuse(file, result.text, bad);
     }
@@ -171,9 +168,7 @@ DecodedText decoded_bytes(const std::string& file, std::string bytes) {
   if (const auto bad = first_control(bytes); bad != std::string_view::npos) {
     refuse(file, bytes, bad);
   }
-  if (bytes.starts_with(byte_order_mark)) {
-    bytes.erase(0, byte_order_mark.size());
-  }
+  bytes = without_mark(std::move(bytes));
   const auto bad = first_invalid_utf8(bytes);
   if (bad == std::string_view::npos) {
     return {.text = std::move(bytes)};

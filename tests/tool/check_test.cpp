@@ -132,7 +132,6 @@ TEST(Fmt, AFileWithSyntaxErrorsStays) {
   EXPECT_EQ(outcome.out, "p.st formatted\n");
 }
 
-}  // namespace
 /// A body has a layout of its own: the diagrams beside it are not formatted either, which nobody should have to guess.
 TEST(Fmt, AFileWithASequentialBodyStaysAndThatIsSaid) {
   const test::Workbench bench;
@@ -150,4 +149,5 @@ TEST(Fmt, AFileWithASequentialBodyStaysAndThatIsSaid) {
   EXPECT_THAT(both.err, HasSubstr("in a file of their own its diagrams are formatted"));
 }
 
+}  // namespace
 }  // namespace hysteron

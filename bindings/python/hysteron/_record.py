@@ -87,8 +87,8 @@ def _has_time(arrays, diagram):
 def as_record(given, diagram=None, *, units=None, columns=None, **options_given):
     """A record as it is; arrays by name as a record; else the name of a file.
 
-    Of arrays, one is the time in seconds, `t`, or `time` beside a signal T, by the rules of a file; without one, `rate` states the rows per second,
-    or else the diagram's sample time counts.
+    Of arrays, one is the time in seconds, `t`, or `time` beside a signal T, by the rules of a file. Without one, `rate`
+    states the rows per second, or else the diagram's sample time counts.
     """
     if isinstance(given, Record):
         return given

@@ -19,6 +19,13 @@ constexpr std::int64_t lowest_dint = std::numeric_limits<std::int32_t>::min();
 constexpr std::int64_t highest_dint = std::numeric_limits<std::int32_t>::max();
 constexpr double two_to_32 = 4294967296.0;
 
+bool holds(Plain type, std::int64_t low, std::int64_t high) {
+  return lowest(type) <= low && high <= highest(type);
+}
+bool holds(Plain wide, Plain narrow) {
+  return holds(wide, lowest(narrow), highest(narrow));
+}
+
 }  // namespace
 
 Value Computer::refused(int number, std::string cause, std::string mend) {
@@ -61,6 +68,9 @@ bool Computer::is_true(const Value& value) const {
   return GraphBuilder::is_literal(value.wire) && builder_.value(value.wire) != 0.0;
 }
 bool Computer::is_false(const Value& value) const {
+  return is_zero(value);
+}
+bool Computer::is_zero(const Value& value) const {
   return GraphBuilder::is_literal(value.wire) && builder_.value(value.wire) == 0.0;
 }
 
@@ -110,7 +120,7 @@ Value Computer::fit(const Value& value, Plain type) {
     result.high = std::min(value.high, highest_dint);
     return result;
   }
-  if (value.low >= lowest(type) && value.high <= highest(type)) {
+  if (holds(type, value.low, value.high)) {
     return result;
   }
   const std::int64_t mask = (std::int64_t{1} << info(type).width) - 1;
@@ -163,9 +173,9 @@ Value Computer::assignable(const Value& value, Plain type, const std::string& ta
       return fit({.wire = real_of(value), .type = type, .wide = true}, type);
     }
     const bool by_range = value.untyped && !value.loose && !value.beyond_dint();
-    const bool reaches = value.loose ? value.low >= lowest(type) && value.low <= highest(type)
-                         : by_range  ? value.low >= lowest(type) && value.high <= highest(type)
-                                     : lowest(value.type) >= lowest(type) && highest(value.type) <= highest(type);
+    const bool reaches = value.loose ? holds(type, value.low, value.low)
+                         : by_range  ? holds(type, value.low, value.high)
+                                     : holds(type, value.type);
     if (!reaches && by_range) {
       return refused(
           error::type_mismatch,
@@ -305,10 +315,6 @@ Value Computer::beyond(Plain type, std::int64_t number) {
 
 namespace {
 
-bool holds(Plain type, std::int64_t low, std::int64_t high) {
-  return lowest(type) <= low && high <= highest(type);
-}
-
 /// The smallest type that holds all from low to high, of the bits where `bits` says so; none beyond 32 bits.
 std::optional<Plain> smallest(bool bits, std::int64_t low, std::int64_t high) {
   constexpr std::array of_bits{Plain::Byte, Plain::Word, Plain::Dword};
@@ -413,14 +419,11 @@ bool Computer::meet(Value& left, Value& right, std::string_view what) {
     if (left.untyped != right.untyped) {
       Value& chosen = left.untyped ? left : right;
       const Plain type = left.untyped ? right.type : left.type;
-      if (chosen.low >= lowest(type) && chosen.high <= highest(type)) {
+      if (holds(type, chosen.low, chosen.high)) {
         chosen = fit(chosen, type);
         return true;
       }
     }
-    const auto holds = [](Plain wide, Plain narrow) {
-      return lowest(narrow) >= lowest(wide) && highest(narrow) <= highest(wide);
-    };
     if (holds(left.type, right.type) || holds(right.type, left.type)) {
       (holds(left.type, right.type) ? right.type : left.type) = holds(left.type, right.type) ? left.type : right.type;
       return true;

@@ -89,10 +89,6 @@ Value Computer::integer(Op op, const Value& left, const Value& right, Plain type
   return ranged(apply(op, {left.wire, right.wire}), type, low, high);
 }
 
-bool Computer::is_zero(const Value& value) const {
-  return GraphBuilder::is_literal(value.wire) && builder_.value(value.wire) == 0.0;
-}
-
 void Computer::warn_of_zero(bool remainder) {
   report_(error::other_meaning_elsewhere, span_,
           fmt::format("{} by 0 gives {} here; MATIEC refuses it, and many PLCs stop", remainder ? "MOD" : "a division",

@@ -60,4 +60,13 @@ double carried(const WholeInput& input, double value) {
   return input.unsigned_32 && value >= half ? value - 2.0 * half : value;
 }
 
+void carry(const std::optional<WholeInput>& input, std::span<double> values) {
+  if (!input) {
+    return;
+  }
+  for (double& value : values) {
+    value = carried(*input, value);
+  }
+}
+
 }  // namespace hysteron::bodies

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,5 +28,8 @@ struct WholeInput {
 
 /// What carries a number of a record: of a UDINT above 2^31 - 1 the DINT of the same bits.
 [[nodiscard]] double carried(const WholeInput& input, double value);
+
+/// The same of all values of an input.
+void carry(const std::optional<WholeInput>& input, std::span<double> values);
 
 }  // namespace hysteron::bodies

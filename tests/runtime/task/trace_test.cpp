@@ -330,17 +330,14 @@ TEST(Trace, FilesFollowOneAnotherAndTheOldestGo) {
   }
 }
 
-/// As logrotate does it: the name is another file's, or no file's, and the task goes on in a new one.
-TEST(Trace, AFileThatIsMovedAwayIsFollowedByAnother) {
-  const hysteron::test::ScratchFolder scratch;
-  const TraceSettings settings{.file = scratch / "trace", .waits = true};
-  Accumulator program;
-  Trace trace(settings, program);
+/// Of 2000 cycles, the file goes after the 1000th, and that is seen before the 1500th.
+void run_while_its_file_goes(Trace& trace, Accumulator& program, const std::filesystem::path& file,
+                             const std::function<void()>& go) {
   Task task(program, {.loop = {.cycles = 2000}, .inputs = {{}}, .outputs = {{}, {}}}, {.trace = &trace});
   program.during_step = [&, step = 0](std::span<double>) mutable {
     if (++step == 1000) {
-      EXPECT_TRUE(hysteron::test::soon([&] { return std::filesystem::file_size(settings.file) > 1000; }));
-      std::filesystem::rename(settings.file, scratch / "moved");
+      EXPECT_TRUE(hysteron::test::soon([&] { return std::filesystem::file_size(file) > 1000; }));
+      go();
     }
     if (step == 1500) {
       EXPECT_TRUE(hysteron::test::soon([&] { return trace.wants_next(); }));
@@ -350,6 +347,16 @@ TEST(Trace, AFileThatIsMovedAwayIsFollowedByAnother) {
   const std::atomic<bool> stop{false};
   (void)task.run(clock, stop);
   trace.finish();
+}
+
+/// As logrotate does it: the name is another file's, or no file's, and the task goes on in a new one.
+TEST(Trace, AFileThatIsMovedAwayIsFollowedByAnother) {
+  const hysteron::test::ScratchFolder scratch;
+  const TraceSettings settings{.file = scratch / "trace", .waits = true};
+  Accumulator program;
+  Trace trace(settings, program);
+  run_while_its_file_goes(trace, program, settings.file,
+                          [&] { std::filesystem::rename(settings.file, scratch / "moved"); });
   std::vector<TraceStep> before;
   std::vector<TraceStep> after;
   EXPECT_EQ(replayed(hysteron::test::contents_of(scratch / "moved"), &before).different, 0U);
@@ -366,20 +373,7 @@ TEST(Trace, AFileThatIsDeletedIsSaidAndFollowedByAnother) {
   const TraceSettings settings{.file = scratch / "trace", .waits = true};
   Accumulator program;
   Trace trace(settings, program);
-  Task task(program, {.loop = {.cycles = 2000}, .inputs = {{}}, .outputs = {{}, {}}}, {.trace = &trace});
-  program.during_step = [&, step = 0](std::span<double>) mutable {
-    if (++step == 1000) {
-      EXPECT_TRUE(hysteron::test::soon([&] { return std::filesystem::file_size(settings.file) > 1000; }));
-      std::filesystem::remove(settings.file);
-    }
-    if (step == 1500) {
-      EXPECT_TRUE(hysteron::test::soon([&] { return trace.wants_next(); }));
-    }
-  };
-  VirtualClock clock;
-  const std::atomic<bool> stop{false};
-  (void)task.run(clock, stop);
-  trace.finish();
+  run_while_its_file_goes(trace, program, settings.file, [&] { std::filesystem::remove(settings.file); });
   std::vector<TraceStep> after;
   EXPECT_EQ(replayed(hysteron::test::contents_of(settings.file), &after).different, 0U);
   ASSERT_FALSE(after.empty());

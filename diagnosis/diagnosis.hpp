@@ -160,6 +160,14 @@ struct Trace {
   Over over{};
 };
 
+/// What the swing of a control loop says of its valve, where a controller sets the input of the diagram.
+struct LoopFinding {
+  std::string input{};
+  std::string output{};
+  double feedback = 0.0;  ///< of what the input's own past does not tell, the share that follows from the output
+  double oddness = 0.5;   ///< of the energy of their cross-correlation, the share that is odd about lag 0
+};
+
 /// What would tell the rivals apart best, or show a single cause best.
 struct NextExperiment {
   /// An input of the diagram that rests meanwhile.
@@ -191,6 +199,7 @@ struct Diagnosis {
   std::size_t siblings = 0;           ///< that the probabilities of the evidence take into account
   Evidence evidence{};                ///< where effects leave more than noise: what is there, by families
   std::optional<GapBudget> budget{};  ///< of which kind the gap is; empty where there is none
+  std::optional<LoopFinding> loop{};  ///< where the record is of a control loop
   std::vector<Rival> fitted{};        ///< the best of all sets that were fitted, ruled out or not
   double confidence = 0.0;
   double unknown_score = 0.0;

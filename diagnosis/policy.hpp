@@ -115,6 +115,14 @@ inline constexpr Threshold relevant{
     "relevant", 0.05, "1", "convention: the twentieth part", "what share of the gap an effect has to close to be named",
     anything};
 
+inline constexpr Threshold fed_back{"fed back",
+                                    0.3,
+                                    "1",
+                                    "calibrated: loops of industry have 0.35 or more where their set point rests, "
+                                    "machines with a drive of their own 0.11 or less",
+                                    "from which share of an input that follows from the output on a controller sets it",
+                                    nothing};
+
 inline constexpr Threshold far_above{"far above the noise",
                                      3.0,
                                      "1",
@@ -196,6 +204,7 @@ inline constexpr std::array all{work,
                                 rival,
                                 kept_promise,
                                 relevant,
+                                fed_back,
                                 far_above,
                                 mostly_open,
                                 notably_open,

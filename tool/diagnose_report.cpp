@@ -11,6 +11,7 @@
 
 #include "diagnosis/effects/set_words.hpp"
 #include "diagnosis/evidence/gap_kinds.hpp"
+#include "diagnosis/findings/control_loop.hpp"
 #include "diagnosis/report/diagnosis_files.hpp"
 #include "diagnosis/report/html.hpp"
 #include "support/errors.hpp"
@@ -125,6 +126,9 @@ std::string diagnosis_text(const Diagnosis& found) {
                         with_unit(gap.improved, gap.unit), with_unit(gap.floor.value, gap.unit), gap.floor.evidence);
     text += fmt::format("  {:<10} closed {} ({} to {}) on blocks held out\n", "", closed_percent(gap.closed),
                         closed_percent(gap.closed_low), closed_percent(gap.closed_high));
+  }
+  if (found.loop) {
+    text += fmt::format("  control loop: {}\n", sentence_of(*found.loop));
   }
   if (found.budget) {
     text += budget_text(*found.budget);

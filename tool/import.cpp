@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -13,7 +14,7 @@
 #include "codegen/import/global_list.hpp"
 #include "codegen/import/plcopen_import.hpp"
 #include "codegen/import/twincat_import.hpp"
-#include "codegen/language/time_literal.hpp"
+#include "codegen/language/annotation.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -107,10 +108,9 @@ std::string text_of(const ImportCommand& command, Diagnostics& warnings) {
 
 int import_project(const ImportCommand& command, Console& console) {
   if (const std::string& cycle = command.options.cycle; !cycle.empty()) {
-    const auto nanoseconds = language::nanoseconds_of_time(cycle);
-    if (!nanoseconds || !(*nanoseconds >= 1.0)) {
+    if (std::int64_t nanoseconds = 0; !language::duration_of(cycle, nanoseconds)) {
       throw InputError(error::bad_usage, {}, fmt::format("{} is no sample time.", cycle),
-                       "write a time above 0 with its unit, as in --ts 10ms.");
+                       "write a whole number of nanoseconds above 0 in ns, us, ms or s, as in --ts 10ms.");
     }
   }
   Diagnostics warnings;

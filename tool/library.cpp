@@ -1,14 +1,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "codegen/backends/st/st.hpp"
-#include "codegen/language/time_literal.hpp"
+#include "codegen/language/annotation.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -52,14 +52,13 @@ int write_library(const LibraryOptions& options, Console& console) {
     refuse(fmt::format("There is no dialect {}.", options.dialect),
            fmt::format("the dialects are: {}.", st_dialect_names()));
   }
-  const auto nanoseconds = language::nanoseconds_of_time(options.sample_time);
-  constexpr double longest = 9.0e18;
-  if (!nanoseconds || !(*nanoseconds >= 1.0) || *nanoseconds > longest || *nanoseconds != std::floor(*nanoseconds)) {
+  std::int64_t nanoseconds = 0;
+  if (!language::duration_of(options.sample_time, nanoseconds)) {
     refuse(fmt::format("{} is no sample time.", options.sample_time),
-           "write a whole number of nanoseconds above 0, as in --ts 50us.");
+           "write a whole number of nanoseconds above 0 in ns, us, ms or s, as in --ts 50us.");
   }
   std::vector<OutputFile> files;
-  for (const GeneratedFile& file : generate_st_library(static_cast<std::int64_t>(*nanoseconds),
+  for (const GeneratedFile& file : generate_st_library(nanoseconds,
                                                        {.dialect = *dialect, .float32 = options.float32})) {
     files.push_back({.path = fs::path(options.folder) / file.name, .contents = file.text});
     refuse_foreign_file(files.back().path, file.text, "choose another folder with --out.");

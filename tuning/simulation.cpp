@@ -80,8 +80,7 @@ std::string unit_advice(double ratio, const std::string& time) {
                   : std::string();
 }
 
-}  // namespace
-
+/// Why a type of the graph cannot take a value; empty where it can.
 std::string type_fault(Type type, double value) {
   switch (type) {
     case Type::Real:
@@ -100,6 +99,8 @@ std::string type_fault(Type type, double value) {
   }
   return {};
 }
+
+}  // namespace
 
 std::string input_fault(const Port& input, const std::optional<bodies::WholeInput>& whole, double value) {
   return whole ? bodies::whole_fault(*whole, value) : type_fault(input.type, value);

@@ -34,10 +34,8 @@ struct Drive {
 [[nodiscard]] Drive drive_from(const records::Record& record, const Program& program, std::vector<Signal> given,
                                Diagnostics& diagnostics);
 
-/// Why a type of the graph cannot take a value, as `takes 0 or 1`; empty where it can.
-[[nodiscard]] std::string type_fault(Type type, double value);
-
-/// The same of an input, by the type that a sequential body declares where that is narrower.
+/// Why an input cannot take a value, as `takes 0 or 1`; empty where it can. `whole`: the type that a sequential body
+/// declares, where that is narrower.
 [[nodiscard]] std::string input_fault(const Port& input, const std::optional<bodies::WholeInput>& whole, double value);
 
 /// Holds the sample time of a record against that of a diagram, allowing for what printing took from the times.

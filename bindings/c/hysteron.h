@@ -106,8 +106,8 @@ typedef struct hysteron_machine hysteron_machine;
 HYSTERON_API hysteron_machine* hysteron_machine_new(const hysteron_diagram* diagram, double sample_time,
                                                     const char* options, hysteron_messages** messages);
 /* One step: a value for each input and each output, in the order of the diagram; TRUE is 1. Returns 0; -1 where a
- * pointer is NULL that must not be or an FMU of the diagram fails, and 1 + i where input i cannot take its value: then no step was made. A
- * step allocates nothing. */
+ * pointer is NULL that must not be or an FMU of the diagram fails, and 1 + i where input i cannot take its value, as a
+ * record of it would be refused: then no step was made. A step allocates nothing. */
 HYSTERON_API int hysteron_machine_step(hysteron_machine* machine, const double* inputs, double* outputs);
 HYSTERON_API void hysteron_machine_reset(hysteron_machine* machine);
 HYSTERON_API void hysteron_machine_free(hysteron_machine* machine);

@@ -1,24 +1,30 @@
 // A diagram that is stepped.
 #include "codegen/interpreter/machine.hpp"
 
-#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "bindings/c/diagram.hpp"
+#include "codegen/graph/body/whole_inputs.hpp"
 #include "tuning/simulation.hpp"
 
 using hysteron::Machine;
 
 struct hysteron_machine {
   std::variant<Machine<double>, Machine<float>> machine;
+  std::vector<std::optional<hysteron::bodies::WholeInput>> whole;  ///< by input, as simulation.hpp asks for them
 };
 
 namespace {
 
 /// 0, or 1 + the first input that cannot take its value.
-int unfit_input(const hysteron::Graph& graph, const double* inputs) {
+int unfit_input(const hysteron::Graph& graph, const std::vector<std::optional<hysteron::bodies::WholeInput>>& whole,
+                const double* inputs) {
   for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
-    if (!hysteron::type_fault(graph.inputs[i].type, inputs[i]).empty()) {
+    if (!hysteron::input_fault(graph.inputs[i], whole[i], inputs[i]).empty()) {
       return static_cast<int>(i) + 1;
     }
   }
@@ -37,8 +43,9 @@ hysteron_machine* hysteron_machine_new(const hysteron_diagram* diagram, double s
     hysteron::bindings::Options given(options);
     const bool float32 = given.flag("float32");
     given.finish();
-    return float32 ? new hysteron_machine{Machine<float>(diagram->program, sample_time)}
-                   : new hysteron_machine{Machine<double>(diagram->program, sample_time)};
+    auto whole = hysteron::bodies::whole_inputs(diagram->program.graph);
+    return float32 ? new hysteron_machine{Machine<float>(diagram->program, sample_time), std::move(whole)}
+                   : new hysteron_machine{Machine<double>(diagram->program, sample_time), std::move(whole)};
   });
 }
 
@@ -53,11 +60,12 @@ int hysteron_machine_step(hysteron_machine* machine, const double* inputs, doubl
           if ((inputs == nullptr && !graph.inputs.empty()) || (outputs == nullptr && !graph.outputs.empty())) {
             return -1;
           }
-          if (const int unfit = unfit_input(graph, inputs); unfit != 0) {
+          if (const int unfit = unfit_input(graph, machine->whole, inputs); unfit != 0) {
             return unfit;
           }
           for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
-            one.set_input(i, inputs[i]);
+            const auto& whole = machine->whole[i];
+            one.set_input(i, whole ? hysteron::bodies::carried(*whole, inputs[i]) : inputs[i]);
           }
           one.step();
           for (std::size_t i = 0; i < graph.outputs.size(); ++i) {

@@ -99,6 +99,16 @@ Json budget_of(const std::optional<GapBudget>& budget) {
           {"kinds", std::move(kinds)}};
 }
 
+Json loop_of(const std::optional<LoopFinding>& loop) {
+  if (!loop) {
+    return nullptr;
+  }
+  return {{"input", loop->input},
+          {"output", loop->output},
+          {"feedback", number_or_null<Json>(loop->feedback)},
+          {"oddness", number_or_null<Json>(loop->oddness)}};
+}
+
 Json gap_of(const GapFinding& gap) {
   return {{"signal", gap.signal},
           {"unit", gap.unit},
@@ -235,6 +245,7 @@ std::string verdict_json(const Diagnosis& found) {
                   {"families", families_of(found.evidence)},
                   {"evidence", law_sets_of(found.evidence)},
                   {"budget", budget_of(found.budget)},
+                  {"control_loop", loop_of(found.loop)},
                   {"unknown_score", number_or_null<Json>(found.unknown_score)},
                   {"gap", gap_of(found.gap)},
                   {"prediction", prediction_of(found)},

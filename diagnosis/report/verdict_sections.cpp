@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "diagnosis/findings/control_loop.hpp"
 #include "diagnosis/report/html.hpp"
 #include "diagnosis/report/sections.hpp"
 
@@ -214,6 +215,9 @@ std::string verdict_section(const Diagnosis& diagnosis) {
                       refused ? "Record refused" : label_of(diagnosis.verdict));
   if (!refused && !diagnosis.summary.empty()) {  // of a refusal it is the first of the reasons
     html += fmt::format("<p class=\"summary\">{}</p>\n", escaped(diagnosis.summary));
+  }
+  if (diagnosis.loop) {
+    html += fmt::format("<p class=\"note\">{}</p>\n", escaped(sentence_of(*diagnosis.loop)));
   }
   if (!refused) {
     html += fmt::format(

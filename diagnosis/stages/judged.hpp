@@ -17,6 +17,7 @@ struct Judged {
   std::optional<Unrepeatable> unrepeatable{};
   Evidence evidence{};                ///< see weighed.hpp; empty where it was not asked
   std::optional<GapBudget> budget{};  ///< see weighed.hpp; empty where there is no gap
+  std::optional<LoopFinding> loop{};  ///< see weighed.hpp; empty where no controller sets the input
   bool is_related = true;             ///< the calibrated diagram follows the record at least a little
   std::size_t tried = 0;
   std::vector<std::string> warnings{};

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "diagnosis/effects/known_effects.hpp"
+#include "diagnosis/findings/control_loop.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -183,6 +184,18 @@ Runs runs_of(const std::vector<Told>& told, const Judged& judged, const Diagnosi
     result.closed.push_back(1.0 - one.residuals.squaredNorm() / nothing.residuals.squaredNorm());
   }
   return result;
+}
+
+void weigh_by_loop(const LoopFinding& loop, Runs& runs) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < runs.sets.size(); ++i) {
+    const bool sticks = std::ranges::any_of(runs.sets[i].families, is_sticking);
+    runs.votes[i] *= sticks ? loop.oddness : 1.0 - loop.oddness;
+    sum += runs.votes[i];
+  }
+  for (double& one : runs.votes) {
+    one = sum > 0.0 ? one / sum : 0.0;
+  }
 }
 
 Evidence evidence_of_search(const Runs& runs, const Task& task) {

@@ -54,6 +54,9 @@ struct Runs {
 [[nodiscard]] Runs runs_of(const std::vector<Told>& told, const Judged& judged, const DiagnosisOptions& options,
                            const Rules& rules);
 
+/// The votes with the odds that the swing of a loop gives to what sticks.
+void weigh_by_loop(const LoopFinding& loop, Runs& runs);
+
 /// What the search tells, as evidence: its sets by the votes, their families each with its part of what a set closes,
 /// by what each closes alone.
 [[nodiscard]] Evidence evidence_of_search(const Runs& runs, const Task& task);

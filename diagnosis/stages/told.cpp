@@ -7,6 +7,7 @@
 #include "codegen/parameters/elements.hpp"
 #include "diagnosis/effects/candidates.hpp"
 #include "diagnosis/effects/known_effects.hpp"
+#include "diagnosis/findings/control_loop.hpp"
 #include "diagnosis/findings/doubts.hpp"
 #include "diagnosis/findings/evidence_findings.hpp"
 #include "diagnosis/findings/findings.hpp"
@@ -166,6 +167,13 @@ Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOption
   for (EffectFinding& effect : result.effects) {
     const auto known = families.find(effect.id);
     effect.family = known == families.end() ? effect.id : known->second;
+  }
+  if (judged.loop) {
+    result.loop = judged.loop;
+    if (judged.evidence.families.empty()) {  // their probabilities have it already
+      const bool sticks = std::ranges::any_of(result.effects, is_sticking, &EffectFinding::family);
+      result.confidence = with_loop(*judged.loop, result.confidence, sticks);
+    }
   }
   result.traces = traces_of(record.task, result.gaps, record.nominal, calibrated.fit.residuals, kept.fit.residuals);
   draw_over_inputs(record.task, kept.variant.program->graph, judged.evidence, result.traces);

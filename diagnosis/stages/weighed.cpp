@@ -9,6 +9,7 @@
 #include "diagnosis/evidence/explained.hpp"
 #include "diagnosis/evidence/gap_budget.hpp"
 #include "diagnosis/evidence/output_space.hpp"
+#include "diagnosis/findings/control_loop.hpp"
 #include "diagnosis/stages/proposals.hpp"
 
 namespace hysteron::diagnosis {
@@ -79,6 +80,7 @@ Judged weighed(Judged judged, const Answer& answer, const DiagnosisOptions& opti
   const Cleaned& record = judged.record;
   const Explanation& calibrated = judged.calibrated();
   const std::string& output = record.task.outputs[answer.gap_output];
+  judged.loop = control_loop(record.task, *record.given, rules);
   if (!leaves_a_cause(judged, answer, rules)) {
     if (answer.verdict != Verdict::None && answer.verdict != Verdict::Calibration) {
       const OutputSpace outputs(record.task, record.top, calibrated, record.unused, options.threads);
@@ -111,7 +113,10 @@ Judged weighed(Judged judged, const Answer& answer, const DiagnosisOptions& opti
   }
   // A run of the loop is no judge of a plant that was taken out of it: the loop hides the plant.
   const bool is_open_loop = !told.empty() && told.front().evidence.is_open_loop;
-  const Runs runs = runs_of(told, judged, options, rules);
+  Runs runs = runs_of(told, judged, options, rules);
+  if (judged.loop) {
+    weigh_by_loop(*judged.loop, runs);
+  }
   if (is_open_loop || runs.are_for_told()) {
     const std::size_t at = is_open_loop ? 0 : runs.best_told();
     const Told& best = told[at];

@@ -136,6 +136,25 @@ static void an_input_of_another_type_makes_no_step(void) {
   hysteron_diagram_free(diagram);
 }
 
+/* An INT and a UDINT of a sequential body are carried by a DINT, and take what their own types hold. */
+static void an_input_takes_what_its_declared_type_holds(void) {
+  static const char text[] =
+      "FUNCTION_BLOCK COUNTED (* @ts 1ms @body *) VAR_INPUT N : INT; M : UDINT; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"
+      "Y := INT_TO_LREAL(N) + UDINT_TO_LREAL(M);\nEND_FUNCTION_BLOCK\n";
+  hysteron_diagram* diagram = hysteron_compile_text(text, NULL, NULL);
+  hysteron_machine* machine = hysteron_machine_new(diagram, 0.0, NULL, NULL);
+  const double wide[2] = {70000.0, 0.0};
+  const double negative[2] = {0.0, -5000000000.0};
+  const double fits[2] = {-3.0, 4000000000.0};
+  double y = -1.0;
+  CHECK(machine != NULL);
+  CHECK(hysteron_machine_step(machine, wide, &y) == 1 && y == -1.0);
+  CHECK(hysteron_machine_step(machine, negative, &y) == 2 && y == -1.0);
+  CHECK(hysteron_machine_step(machine, fits, &y) == 0 && y == 3999999997.0);
+  hysteron_machine_free(machine);
+  hysteron_diagram_free(diagram);
+}
+
 static void errors_have_code_place_and_mend(void) {
   hysteron_messages* messages = NULL;
   hysteron_diagram* diagram = plant();
@@ -273,6 +292,7 @@ int main(void) {
   steps_and_runs_give_the_same();
   a_signal_called_t_is_a_signal();
   an_input_of_another_type_makes_no_step();
+  an_input_takes_what_its_declared_type_holds();
   errors_have_code_place_and_mend();
   a_goal_is_tuned_without_a_record();
   limits_that_cannot_be_kept_are_an_error_beside_the_result();

@@ -165,11 +165,11 @@ TEST(CommandLine, FilesThatAreNotThere) {
   EXPECT_EQ(run.err, outcome.out);
 }
 
-/// It had written the file, and then told what is wrong with it.
+/// It had written the file, and then told what is wrong with it: 1m is a time of a PLC, and no @ts.
 TEST(CommandLine, AnImportWithoutASampleTimeWritesNothing) {
   const test::Workbench bench;
   bench.write("drawing.xml", "<project/>");
-  for (const std::string time : {"0ms", "-1ms", "soon"}) {
+  for (const std::string time : {"0ms", "-1ms", "soon", "1m", "1s500ms", "0.5ns"}) {
     const auto outcome = bench.shell("hysteron import drawing.xml --ts " + time + " --out made.st");
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr(time + " is no sample time.")) << outcome.err;

@@ -27,10 +27,13 @@ def probability(verdict: dict[str, Any] | None, run: dict[str, Any], anywhere: b
     """That the valve sticks, as far as a verdict says it; 0 where there is none. `anywhere` counts what is named behind the
     process, too: the right effect in the wrong place.
 
-    Where the verdict states families, it is that of dry friction, or of an effect that it names at the valve. Else it is the sum
-    over the sets that are not ruled out, each with its probability, of those that have such an effect ahead of the process.
+    Where the verdict says what the swing of the loop tells, it is that. Else, where the verdict states families, it is that of dry
+    friction, or of an effect that it names at the valve. Else it is the sum over the sets that are not ruled out, each with its
+    probability, of those that have such an effect ahead of the process.
     """
     read, v = claim(verdict, run), verdict or {}
+    if v.get("control_loop"):
+        return _share(v["control_loop"].get("oddness"), 0.0)
     effects = [one for one in v.get("effects") or [] if sticks(one["id"], one.get("family"))]
     at_valve = [one for one in effects if _counts(str(one.get("edge", "")), one.get("same_edges") or [], anywhere)]
     if read.families:

@@ -1,0 +1,179 @@
+#include "diagnosis/findings/control_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <string>
+#include <unsupported/Eigen/FFT>
+#include <vector>
+
+#include "blocks/families.hpp"
+#include "diagnosis/policy.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// Costs alone: a swing has come again a thousand times by then.
+constexpr std::size_t longest = std::size_t{1} << 16U;
+/// Samples of the past that a regression has of each signal: what a controller and a prediction need.
+constexpr Index past = 5;
+/// Of its size, the spread of a signal that stands still.
+constexpr double still = 1e-9;
+
+/// Without its straight line, of unit spread; zero where it stands still.
+VectorXd centred(std::span<const double> values) {
+  const auto count = std::ssize(values);
+  VectorXd result = Eigen::Map<const VectorXd>(values.data(), count);
+  const double size = result.cwiseAbs().maxCoeff();
+  const VectorXd along = VectorXd::LinSpaced(count, -1.0, 1.0);
+  result.array() -= result.mean();
+  result -= along * (along.dot(result) / along.squaredNorm());
+  const double spread = result.norm() / std::sqrt(static_cast<double>(count));
+  if (!(spread > still * size) || !std::isfinite(spread)) {
+    return VectorXd::Zero(count);
+  }
+  return result / spread;
+}
+
+bool is_long_enough(std::span<const double> input, std::span<const double> output) {
+  constexpr std::size_t fewest = 4 * static_cast<std::size_t>(past) + 4;
+  return input.size() == output.size() && input.size() >= fewest;
+}
+
+/// By Hann's window, so that a change between begin and end is no swing; followed by as many zeros.
+std::vector<std::complex<double>> spectrum(const VectorXd& signal, Eigen::FFT<double>& fft) {
+  const auto count = static_cast<std::size_t>(signal.size());
+  std::vector<double> values(2 * count, 0.0);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double turn = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(count - 1);
+    values[k] = 0.5 * (1.0 - std::cos(turn)) * signal[static_cast<Index>(k)];
+  }
+  std::vector<std::complex<double>> result;
+  fft.fwd(result, values);
+  return result;
+}
+
+/// The first input that a column of the records drives and that moves; nothing where there are several.
+const Port* lone_input(const Task& task, const Graph& graph) {
+  const Port* result = nullptr;
+  for (const Port& input : graph.inputs) {
+    const records::Column* const column = task.records.front().find(input.name);
+    if (input.type != Type::Real || column == nullptr || column->values.empty()) {
+      continue;
+    }
+    if (const auto [low, high] = std::ranges::minmax(column->values); low < high) {
+      if (result != nullptr) {
+        return nullptr;
+      }
+      result = &input;
+    }
+  }
+  return result;
+}
+
+std::span<const double> part_of(const std::vector<double>& values) {
+  return std::span(values).first(std::min(values.size(), longest));
+}
+
+}  // namespace
+
+double feedback_share(std::span<const double> input, std::span<const double> output) {
+  if (!is_long_enough(input, output)) {
+    return 0.0;
+  }
+  const VectorXd u = centred(input);
+  const VectorXd y = centred(output);
+  if (u.isZero(0.0) || y.isZero(0.0)) {
+    return 0.0;
+  }
+  const Index rows = u.size() - past;
+  MatrixXd known(rows, 2 * past + 1);
+  known.col(past).setOnes();
+  for (Index i = 0; i < past; ++i) {
+    known.col(i) = u.segment(past - 1 - i, rows);
+    known.col(past + 1 + i) = y.segment(past - i, rows);
+  }
+  const VectorXd wanted = u.tail(rows);
+  const auto left_by = [&](const auto& columns) {
+    const MatrixXd list = columns;
+    return (wanted - list * list.colPivHouseholderQr().solve(wanted)).squaredNorm();
+  };
+  const double by_itself = left_by(known.leftCols(past + 1));
+  const double with_output = left_by(known);
+  // Of a line, a sine or a staircase without noise its own past tells all: there is nothing to follow.
+  const double nothing = still * wanted.squaredNorm();
+  return by_itself > nothing ? std::clamp(1.0 - with_output / by_itself, 0.0, 1.0) : 0.0;
+}
+
+double oddness(std::span<const double> input, std::span<const double> output) {
+  constexpr double open = 0.5;
+  constexpr std::size_t fewest = 4;  // periods: what came fewer times is no swing
+  if (!is_long_enough(input, output)) {
+    return open;
+  }
+  Eigen::FFT<double> fft;
+  const std::vector<std::complex<double>> u = spectrum(centred(input), fft);
+  const std::vector<std::complex<double>> y = spectrum(centred(output), fft);
+  double odd = 0.0;
+  double all = 0.0;
+  for (std::size_t k = 2 * fewest; k <= input.size(); ++k) {  // two lines a period, by the zeros
+    const std::complex<double> both = y[k] * std::conj(u[k]);
+    odd += both.imag() * both.imag();
+    all += std::norm(both);
+  }
+  return all > 0.0 ? odd / all : open;
+}
+
+std::optional<LoopFinding> control_loop(const Task& task, const Program& program, Rules& rules) {
+  const Port* const input = lone_input(task, program.graph);
+  if (input == nullptr || task.outputs.size() != 1) {
+    return std::nullopt;
+  }
+  LoopFinding result{.input = input->name, .output = task.outputs.front()};
+  double samples = 0.0;
+  for (const records::Record& record : task.records) {
+    const std::span<const double> u = part_of(record.column(result.input).values);
+    const std::span<const double> y = part_of(record.column(result.output).values);
+    const auto size = static_cast<double>(u.size());
+    result.feedback += size * feedback_share(u, y);
+    result.oddness += size * oddness(u, y);
+    samples += size;
+  }
+  result.feedback /= samples;
+  result.oddness /= samples;
+  if (!rules.is_above(policy::fed_back, result.feedback, result.input)) {
+    return std::nullopt;
+  }
+  return result;
+}
+
+bool is_sticking(std::string_view family) {
+  return family == name_of(Family::DryFriction) || family == name_of(Family::Play);
+}
+
+double with_loop(const LoopFinding& loop, double probability, bool sticks) {
+  const double own = sticks ? loop.oddness : 1.0 - loop.oddness;
+  const double both = probability * own + (1.0 - probability) * (1.0 - own);
+  return both > 0.0 ? probability * own / both : probability;
+}
+
+std::string sentence_of(const LoopFinding& loop) {
+  constexpr double clear = 2.0 / 3.0;
+  const std::string_view told =
+      loop.oddness > clear
+          ? "which is slower than the corner of that controller: so does a valve that sticks, and a disturbance as slow"
+      : 1.0 - loop.oddness > clear ? "which is faster than the corner of that controller: so does a tight tuning or a "
+                                     "disturbance, and hardly a valve that sticks"
+                                   : "which is near the corner of that controller, and tells little of the valve";
+  return fmt::format(
+      "{0} follows {1} as a controller sets it: {2:.0f} % of what its own past does not tell. The loop swings with "
+      "{3:.0f} % "
+      "of the correlation of both odd in time, {4}.",
+      loop.input, loop.output, 100.0 * loop.feedback, 100.0 * loop.oddness, told);
+}
+
+}  // namespace hysteron::diagnosis

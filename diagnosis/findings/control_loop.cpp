@@ -162,18 +162,21 @@ double with_loop(const LoopFinding& loop, double probability, bool sticks) {
 }
 
 std::string sentence_of(const LoopFinding& loop) {
-  constexpr double clear = 2.0 / 3.0;
-  const std::string_view told =
-      loop.oddness > clear
-          ? "which is slower than the corner of that controller: so does a valve that sticks, and a disturbance as slow"
-      : 1.0 - loop.oddness > clear ? "which is faster than the corner of that controller: so does a tight tuning or a "
-                                     "disturbance, and hardly a valve that sticks"
-                                   : "which is near the corner of that controller, and tells little of the valve";
+  constexpr double clear = 2.0 / 3.0;  // for words alone: two to one
+  const bool is_slow = loop.oddness > clear;
+  const bool is_fast = 1.0 - loop.oddness > clear;
   return fmt::format(
-      "{0} follows {1} as a controller sets it: {2:.0f} % of what its own past does not tell. The loop swings with "
-      "{3:.0f} % "
-      "of the correlation of both odd in time, {4}.",
-      loop.input, loop.output, 100.0 * loop.feedback, 100.0 * loop.oddness, told);
+      "{} follows {}, as a controller sets it ({:.0f} % of what its own past does not tell). The loop swings {} the "
+      "corner of "
+      "that controller (odd share {:.2f}){}.",
+      loop.input, loop.output, 100.0 * loop.feedback,
+      is_slow   ? "more slowly than"
+      : is_fast ? "faster than"
+                : "near",
+      loop.oddness,
+      is_slow   ? ": as where a valve sticks, or a disturbance is as slow"
+      : is_fast ? ": as where it is tightly tuned or disturbed, and hardly as where a valve sticks"
+                : ", which tells little of the valve");
 }
 
 }  // namespace hysteron::diagnosis

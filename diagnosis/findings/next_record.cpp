@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace hysteron::diagnosis {
 
 std::optional<NextRecord> next_record(const HeldOut& unseen, double noise, double scale) {
+  const double squares = std::accumulate(unseen.squares.begin(), unseen.squares.end(), 0.0);
+  const double rows = std::accumulate(unseen.counts.begin(), unseen.counts.end(), 0.0);
+  const double least = noise * noise * rows <= squares ? noise * noise : 0.0;
   std::vector<double> logs;
-  double squares = 0.0;
-  double rows = 0.0;
   for (std::size_t b = 0; b < unseen.squares.size(); ++b) {
     if (unseen.counts[b] > 0.0 && unseen.squares[b] > 0.0) {
-      logs.push_back(0.5 * std::log(std::max(unseen.squares[b] / unseen.counts[b], noise * noise)));
+      logs.push_back(0.5 * std::log(std::max(unseen.squares[b] / unseen.counts[b], least)));
     }
-    squares += unseen.squares[b];
-    rows += unseen.counts[b];
   }
   constexpr std::size_t fewest = 3;
   if (logs.size() < fewest) {
@@ -33,9 +33,10 @@ std::optional<NextRecord> next_record(const HeldOut& unseen, double noise, doubl
   }
   const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 0.975);
   const double half = t * std::sqrt(variance * (1.0 + 1.0 / n));
-  return NextRecord{.rms = scale * std::sqrt(squares / rows),
-                    .low = scale * std::exp(mean - half),
-                    .high = scale * std::exp(mean + half)};
+  const double rms = std::sqrt(squares / rows);
+  return NextRecord{.rms = scale * rms,
+                    .low = scale * std::min(std::exp(mean - half), rms),
+                    .high = scale * std::max(std::exp(mean + half), rms)};
 }
 
 }  // namespace hysteron::diagnosis

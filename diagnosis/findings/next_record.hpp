@@ -5,7 +5,8 @@
 // The next record is taken for one more block: another day may differ from this one as much as its parts differ among
 // themselves. It is the prediction interval of a normal sample (G. J. Hahn, W. Q. Meeker, Statistical Intervals, 1991).
 // A block counts with its noise at least: where a machine rested less is left, and ln RMS of it would say nothing of
-// one that moves.
+// one that moves. Where less is left of all blocks than that noise, it was taken for too large, and none counts with
+// it. The RMS of all blocks lies in the interval, whatever one block of many has.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,6 @@
 """Every output in JSON is what its schema says, no key more and none less; and every key of a schema occurs."""
 import json
+import math
 import os
 import shutil
 import socket
@@ -267,7 +268,17 @@ class Schemas(unittest.TestCase):
 
     def test_verdict(self):
         (self.folder / "still.csv").write_text("t,U,Y\n" + "".join(f"{k * 0.001:.3f},0,0\n" for k in range(100)))
-        self.holds("verdict", self.printed("diagnose", "plant.st", "--log", "log.csv", "--params", "p.toml", "--out", "found",
+        y, integral, loop = 0.0, 0.0, "t,U,Y\n"
+        for k in range(400):
+            measured = y + 0.01 * math.sin(7.0 * k * k)
+            integral -= 0.02 * measured
+            u = integral - measured + 0.5
+            loop += f"{k * 0.001:.3f},{u:.6f},{measured:.6f}\n"
+            y += 0.1 * (2.0 * u - y)
+        (self.folder / "loop.csv").write_text(loop, encoding="utf-8")
+        self.holds("verdict", self.printed("diagnose", "plant.st", "--log", "loop.csv", "--params", "p.toml", "--out", "looped",
+                                           "--effort", "0.01", "--json"),
+                   self.printed("diagnose", "plant.st", "--log", "log.csv", "--params", "p.toml", "--out", "found",
                                            "--explain", "--effort", "0.01", "--json"),
                    (self.folder / "found/verdict.json").read_text(encoding="utf-8"),
                    self.printed("diagnose", "plant.st", "--log", "still.csv", "--params", "p.toml", "--out", "still", "--json",

@@ -28,7 +28,7 @@ struct Loop {
   double band = 0.0;     ///< of the valve, % of its stroke
   double swing = 0.0;    ///< of a disturbance from outside at the output
   double period = 60.0;  ///< s, of that one
-  double begin = 50.0;  ///< of the output
+  double begin = 50.0;   ///< of the output
   double noise = 0.01;
   std::uint64_t seed = 1;
 };
@@ -167,12 +167,13 @@ TEST(ControlLoop, IsFoundWhereAControllerSetsTheOnlyInput) {
   EXPECT_EQ(found->input, "OP");
   EXPECT_EQ(found->output, "PV");
   EXPECT_GT(found->feedback, 0.9);
-  EXPECT_THAT(sentence_of(*found), AllOf(HasSubstr("OP follows PV"), HasSubstr("so does a valve that sticks")));
+  EXPECT_THAT(sentence_of(*found), AllOf(HasSubstr("OP follows PV, as"), HasSubstr("more slowly than"),
+                                         HasSubstr(": as where a valve sticks")));
   EXPECT_FALSE(found_in(flow, sticking, {"fed back"}));
 
   const auto tight = found_in(flow, record_of(logged({.gain = 2.5, .noise = 0.1})));
   ASSERT_TRUE(tight);
-  EXPECT_THAT(sentence_of(*tight), HasSubstr("hardly a valve that sticks"));
+  EXPECT_THAT(sentence_of(*tight), HasSubstr("hardly as where a valve sticks"));
 }
 
 TEST(ControlLoop, IsNoneWhereAnotherInputMoves) {

@@ -50,6 +50,22 @@ TEST(NextRecord, ABlockAtRestCountsWithItsNoise) {
   EXPECT_DOUBLE_EQ(next_record(blocks_of({0.9, 1.3, 0.7, 1.1}), 0.0, 1.0)->high, moving->high);
 }
 
+/// A noise that was taken for three times as large had put the RMS below its own interval.
+TEST(NextRecord, LiesInItsOwnInterval) {
+  const std::vector<double> rms{0.9, 1.3, 0.7, 1.1, 0.8};
+  const auto next = next_record(blocks_of(rms), 3.0, 1.0);
+  const auto without = next_record(blocks_of(rms), 0.0, 1.0);
+  EXPECT_DOUBLE_EQ(next->low, without->low);
+  EXPECT_DOUBLE_EQ(next->high, without->high);
+  for (const double noise : {0.0, 0.5, 1.0, 10.0}) {
+    for (const double large : {0.01, 1.0, 1e6}) {
+      const auto one = next_record(blocks_of({1.0, 1.0, 1.1, large}), noise, 2.0);
+      EXPECT_LE(one->low, one->rms) << noise << ' ' << large;
+      EXPECT_GE(one->high, one->rms) << noise << ' ' << large;
+    }
+  }
+}
+
 /// Of log-normal blocks, 95 of 100 further ones lie in the interval.
 TEST(NextRecord, HoldsWhatItPromises) {
   std::mt19937_64 random(7);

@@ -32,6 +32,7 @@ struct FamilyText {
   std::string_view name;  ///< as in @family and in reports
   std::string_view meaning;
   bool of_a_part = false;  ///< done by one part to what it passes on, and never to a balance of several
+  bool follows = false;    ///< a filter of its input's past does it
   bool of_a_port = false;  ///< done where numbers come in and go out, and never between two parts of the machine
 };
 
@@ -42,10 +43,16 @@ inline constexpr std::array family_texts{
     FamilyText{Family::Play, "play", "a gap that the motion crosses before anything follows", true},
     FamilyText{Family::Hysteresis, "hysteresis", "a loop whose memory is the input's turning points, at any rate",
                true},
-    FamilyText{Family::SlowMemory, "slow_memory", "what follows its input over seconds or hours: creep, relaxation"},
+    FamilyText{.family = Family::SlowMemory,
+               .name = "slow_memory",
+               .meaning = "what follows its input over seconds or hours: creep, relaxation",
+               .follows = true},
     FamilyText{Family::SlowChange, "slow_change",
                "what changes with the time since the start, whatever the machine does"},
-    FamilyText{Family::LinearDynamics, "linear_dynamics", "what a linear filter does: gain, delay, lag, resonance"},
+    FamilyText{.family = Family::LinearDynamics,
+               .name = "linear_dynamics",
+               .meaning = "what a linear filter does: gain, delay, lag, resonance",
+               .follows = true},
     FamilyText{Family::StaticCurve, "static_curve", "a curve over the present value: limit, dead zone, bend", true},
     FamilyText{Family::RateLimit, "rate_limit", "a bound on the rate of change", true},
     FamilyText{Family::PeriodicOverPosition, "periodic_over_position", "what repeats itself over a position"},

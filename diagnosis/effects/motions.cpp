@@ -144,6 +144,61 @@ bool is_integral(const Graph& graph, const Wire& signal) {
   return is_integrator(graph.nodes[signal.index]);
 }
 
+Wire without_gains(const Graph& graph, Wire signal) {
+  const auto is_constant = [](const Wire& wire) {
+    return wire.from == Wire::From::Literal || wire.from == Wire::From::Parameter;
+  };
+  while (signal.from == Wire::From::Node) {
+    const Node& node = graph.nodes[signal.index];
+    const Wire& first = graph.wire(node, 0);
+    const bool is_gain = node.block != nullptr && node.block->about.name == "HY_GAIN";
+    if (is_gain || (node.block == nullptr && node.op == Op::Negate)) {
+      signal = first;
+    } else if (node.block == nullptr && node.op == Op::Multiply && is_constant(first)) {
+      signal = graph.wire(node, 1);
+    } else if (node.block == nullptr && (node.op == Op::Multiply || node.op == Op::Divide) &&
+               is_constant(graph.wire(node, 1))) {
+      signal = first;
+    } else {
+      break;
+    }
+  }
+  return signal;
+}
+
+const Port* followed_input(const Graph& graph, const Wire& signal) {
+  Wire wire = without_gains(graph, signal);
+  for (std::size_t passed = 0; wire.from == Wire::From::Node && passed < graph.nodes.size(); ++passed) {
+    const Node& node = graph.nodes[wire.index];
+    bool is_alone = integrals_of(node, wire.port) < 0 || smoothing_of(node).order > 0;
+    for (std::size_t pin = 1; pin < node.wire_count; ++pin) {
+      const Wire& other = graph.wire(node, pin);  // that it runs, as a rule
+      is_alone = is_alone && other.from != Wire::From::Node && other.from != Wire::From::Input;
+    }
+    if (!is_alone) {
+      return nullptr;
+    }
+    wire = without_gains(graph, graph.wire(node, 0));
+  }
+  return wire.from == Wire::From::Input ? &graph.inputs[wire.index] : nullptr;
+}
+
+bool leads_to_rates(const Graph& graph, std::string_view path) {
+  bool is_read = false;
+  for (const Node& reader : graph.nodes) {
+    for (std::size_t pin = 0; pin < reader.wire_count; ++pin) {
+      const Wire& wire = graph.wire(reader, pin);
+      if (wire.from == Wire::From::Node && graph.nodes[wire.index].path == path) {
+        is_read = true;
+        if (integrals_of(reader) >= 0) {
+          return false;
+        }
+      }
+    }
+  }
+  return is_read;
+}
+
 bool is_balance(const Graph& graph, const Wire& signal, const std::string& passed_on_by) {
   if (signal.from != Wire::From::Node) {
     return false;

@@ -33,6 +33,16 @@ namespace hysteron::diagnosis {
 /// Whether a signal is the integral of another one: a speed, a position, a level. A force is none, and no friction.
 [[nodiscard]] bool is_integral(const Graph& graph, const Wire& signal);
 
+/// What a signal is a constant times of: back through gains and signs.
+[[nodiscard]] Wire without_gains(const Graph& graph, Wire signal);
+
+/// The input that a signal is the motion of: a constant times it or its rates, however these are smoothed; null where
+/// it has other sources.
+[[nodiscard]] const Port* followed_input(const Graph& graph, const Wire& signal);
+
+/// Whether all that reads what a node gives takes the rate of it.
+[[nodiscard]] bool leads_to_rates(const Graph& graph, std::string_view path);
+
 /// Whether a signal is a sum, and what a node of that path passes on of it is integrated: a balance of forces, of
 /// flows, of heats, whose excess is stored.
 [[nodiscard]] bool is_balance(const Graph& graph, const Wire& signal, const std::string& passed_on_by);

@@ -240,6 +240,17 @@ Grids with_finer_durations(const Applied& effect, Grids grids) {
   return grids;
 }
 
+/// A smoother spreads what is open for a few samples over all rows, less and less, down to 10⁻³⁰⁰. A row that has a
+/// thousandth of it at most is a test of the law like any other.
+MatrixXd without_tails(MatrixXd slacks) {
+  constexpr double tail = 1e-3;
+  for (Index k = 0; k < slacks.cols(); ++k) {
+    const double least = tail * slacks.col(k).cwiseAbs().maxCoeff();
+    slacks.col(k) = (slacks.col(k).array().abs() <= least).select(0.0, slacks.col(k));
+  }
+  return slacks;
+}
+
 struct Job {
   const EffectKind* kind = nullptr;
   std::size_t place = 0;
@@ -362,7 +373,7 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
         draft.law.family = family_at(*job.kind, draft.law, hints.duration / static_cast<double>(blocks.count()));
         draft.law.responses = thin.middleCols(column, std::ssize(draft.law.terms));
         column += std::ssize(draft.law.terms);
-        draft.law.slacks = thin.middleCols(column, std::ssize(draft.slacks));
+        draft.law.slacks = without_tails(thin.middleCols(column, std::ssize(draft.slacks)));
         column += std::ssize(draft.slacks);
         if (draft.law.responses.squaredNorm() > 0.0) {
           found[i].push_back(std::move(draft.law));

@@ -226,11 +226,7 @@ bool MissingSpace::solve(const Explanation& fitted, const std::vector<std::strin
     const Program there = with_values(task_, *edge.program, known);
     const TangentRun other(task_, there, states, bottleneck_.edge.input);
     const auto at = static_cast<std::size_t>(find_port(there.graph.inputs, input) - there.graph.inputs.data());
-    Place place{.edge = edge.edge,
-                .unit = unit_of_sum(there, edge.instance),
-                .is_port = is_port(fitted.variant.program->graph, edge.edge),
-                .is_integral = is_integral(there.graph, edge.before),
-                .is_balance = is_balance(there.graph, edge.before, edge.instance)};
+    Place place = place_of(task_, there, edge, fitted.variant.program->graph);
     const TangentRun::Variable variable{.kind = TangentRun::Kind::Signal, .index = at};
     ways_.emplace_back();
     for (std::size_t e = 0; e < records; ++e) {

@@ -10,6 +10,7 @@
 #include "codegen/graph/units.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "diagnosis/effects/motions.hpp"
+#include "diagnosis/evidence/roles.hpp"
 #include "diagnosis/model/parallel.hpp"
 #include "tuning/machine_dual.hpp"
 
@@ -44,6 +45,33 @@ bool is_port(const Graph& graph, const Edge& edge) {
   return std::ranges::any_of(graph.inputs, is_named) || std::ranges::any_of(graph.outputs, is_named);
 }
 
+Space::Place place_of(const Task& task, const Program& there, const SummedEdge& edge, const Graph& graph) {
+  const std::vector<std::vector<std::string>> units = units::Solution(there.graph, there.schedule).outputs();
+  const auto unit_of = [&](const Wire& wire) -> std::string {
+    if (wire.from == Wire::From::Input) {
+      return there.graph.inputs[wire.index].unit;
+    }
+    const bool has_unit = wire.from == Wire::From::Node && wire.port < units[wire.index].size();
+    return has_unit ? units[wire.index][wire.port] : std::string();
+  };
+  const auto is_motion = [](const std::string& unit) {
+    const Quantity quantity = quantity_of(unit);
+    return quantity.position || quantity.velocity;
+  };
+  const bool asks_for_motion = std::ranges::any_of(
+      task.outputs, [&](const std::string& output) { return is_motion(find_port(graph.outputs, output)->unit); });
+  const Port* const input = followed_input(there.graph, edge.before);
+  const bool is_given = !asks_for_motion && input != nullptr && is_motion(input->unit);
+  return {.edge = edge.edge,
+          .unit = unit_of_sum(there, edge.instance),
+          .is_port = is_port(graph, edge.edge),
+          .is_integral = is_integral(there.graph, edge.before),
+          .is_balance = is_balance(there.graph, edge.before, edge.instance),
+          .is_of_velocity = quantity_of(unit_of(without_gains(there.graph, edge.before))).velocity,
+          .is_given_motion = is_given,
+          .is_differentiated = is_given && leads_to_rates(there.graph, edge.instance)};
+}
+
 OutputSpace::OutputSpace(const Task& task, const std::string& top, const Explanation& fitted,
                          const std::vector<std::string>& unused, unsigned threads)
     : task_(task), fitted_(fitted) {
@@ -60,12 +88,8 @@ OutputSpace::OutputSpace(const Task& task, const std::string& top, const Explana
       added[i].reset();
       return;
     }
-    places[i] = {.edge = edges[i],
-                 .carried = wire_signals(task, *added[i]->program, {added[i]->before}, known).front(),
-                 .unit = unit_of_sum(*added[i]->program, added[i]->instance),
-                 .is_port = is_port(fitted.variant.program->graph, edges[i]),
-                 .is_integral = is_integral(added[i]->program->graph, added[i]->before),
-                 .is_balance = is_balance(added[i]->program->graph, added[i]->before, added[i]->instance)};
+    places[i] = place_of(task, *added[i]->program, *added[i], fitted.variant.program->graph);
+    places[i].carried = wire_signals(task, *added[i]->program, {added[i]->before}, known).front();
   });
   for (std::size_t i = 0; i < edges.size(); ++i) {
     if (added[i]) {

@@ -40,6 +40,10 @@ class OutputSpace : public Space {
 /// Whether an edge is an input or an output of the diagram.
 [[nodiscard]] bool is_port(const Graph& graph, const Edge& edge);
 
+/// An edge of a diagram as a place, without what it carries: what its unit, its wires and the outputs say of it.
+/// `there` is the diagram with a sum on that edge, `graph` the one without.
+[[nodiscard]] Space::Place place_of(const Task& task, const Program& there, const SummedEdge& edge, const Graph& graph);
+
 /// A program with the values of the task's file and the known parameters as given.
 [[nodiscard]] Program with_values(const Task& task, const Program& program, const VectorXd& known);
 

@@ -46,6 +46,10 @@ bool may_act_on(const EffectKind& kind, const Space::Place& place) {
     return false;
   }
   const FamilyText* const family = text_of_family(kind);
+  const bool follows = family != nullptr && family->follows;
+  if (place.is_differentiated || (place.is_given_motion && !place.is_port && follows)) {
+    return false;
+  }
   if (place.is_balance && family != nullptr && family->of_a_part) {
     return false;
   }
@@ -78,7 +82,7 @@ bool may_load(const DriverSignal& signal) {
 
 bool carries_velocity(const Space::Place& place, const std::vector<DriverSignal>& drivers) {
   constexpr double proportional = 0.9999;
-  if (quantity_of(place.unit).velocity) {
+  if (place.is_of_velocity || quantity_of(place.unit).velocity) {
     return true;
   }
   return std::ranges::any_of(drivers, [&](const DriverSignal& driver) {

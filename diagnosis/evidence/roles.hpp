@@ -21,7 +21,9 @@ struct Quantity {
 
 /// A friction is a force: on no position, velocity, temperature, and on no number such as a share of power. What
 /// repeats over a position acts on a position or on a force. A balance is no signal that a part passes on: what has
-/// play, bends or is limited is one of its summands.
+/// play, bends or is limited is one of its summands. Where a motion is given and a force asked for, as robots are
+/// identified, the speed and the acceleration are worked out of the record: no part passes a motion on before its rate
+/// is taken, and what a filter closes behind that makes up for the filters by which it was worked out.
 [[nodiscard]] bool may_act_on(const EffectKind& kind, const Space::Place& place);
 
 /// Whether an effect adds something to its edge that a regression can find: no gain, which is a matter of calibration;

@@ -21,7 +21,10 @@ class Space {
     std::string unit{};    ///< empty where the diagram does not say it
     bool is_port = false;  ///< an input or an output of the diagram
     bool is_integral = false;
-    bool is_balance = false;  ///< see motions.hpp
+    bool is_balance = false;         ///< see motions.hpp
+    bool is_of_velocity = false;     ///< a constant times a velocity
+    bool is_given_motion = false;    ///< it follows from a motion that is an input, where no output is a motion
+    bool is_differentiated = false;  ///< such a one, on its way to nothing but its rates
   };
 
   Space() = default;

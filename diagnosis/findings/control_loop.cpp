@@ -13,6 +13,7 @@
 
 #include "blocks/families.hpp"
 #include "diagnosis/policy.hpp"
+#include "tuning/simulation.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -57,6 +58,43 @@ std::vector<std::complex<double>> spectrum(const VectorXd& signal, Eigen::FFT<do
   return result;
 }
 
+/// Squares of a signal that five samples of its own past do not tell, nor as many of another one from `lag` ago on.
+struct Untold {
+  double by_itself = 0.0;
+  double with_other = 0.0;
+};
+Untold untold(const VectorXd& signal, const VectorXd& other, Index lag) {
+  const Index rows = signal.size() - past;
+  MatrixXd known(rows, 2 * past + 1);
+  known.col(past).setOnes();
+  for (Index i = 0; i < past; ++i) {
+    known.col(i) = signal.segment(past - 1 - i, rows);
+    known.col(past + 1 + i) = other.segment(past - i - lag, rows);
+  }
+  const VectorXd wanted = signal.tail(rows);
+  const auto left_by = [&](const auto& columns) {
+    const MatrixXd list = columns;
+    return (wanted - list * list.colPivHouseholderQr().solve(wanted)).squaredNorm();
+  };
+  return {.by_itself = left_by(known.leftCols(past + 1)), .with_other = left_by(known)};
+}
+
+/// Of one stretch.
+double feedback_in(std::span<const double> input, std::span<const double> output) {
+  if (!is_long_enough(input, output)) {
+    return 0.0;
+  }
+  const VectorXd u = centred(input);
+  const VectorXd y = centred(output);
+  if (u.isZero(0.0) || y.isZero(0.0)) {
+    return 0.0;
+  }
+  const Untold left = untold(u, y, 0);
+  // Of a line, a sine or a staircase without noise its own past tells all: there is nothing to follow.
+  const double nothing = still * static_cast<double>(u.size());
+  return left.by_itself > nothing ? std::clamp(1.0 - left.with_other / left.by_itself, 0.0, 1.0) : 0.0;
+}
+
 /// The first input that a column of the records drives and that moves; nothing where there are several.
 const Port* lone_input(const Task& task, const Graph& graph) {
   const Port* result = nullptr;
@@ -75,6 +113,45 @@ const Port* lone_input(const Task& task, const Graph& graph) {
   return result;
 }
 
+/// What the output of the diagram does in the very sample in which the input moves by 1, after a rest.
+double answer_at_once(const Program& program, const Port& input, const records::Record& record,
+                      const std::string& output) {
+  constexpr std::size_t rest = 10;  // a block may take its first sample for what was before
+  const auto at = static_cast<std::size_t>(&input - program.graph.inputs.data());
+  const auto [low, high] = std::ranges::minmax(record.column(input.name).values);
+  Drive drive{.steps = rest + 1, .sample_time = record.sample_time()};
+  for (const Port& one : program.graph.inputs) {
+    drive.inputs.push_back({one.preset});
+  }
+  const std::vector<Wire> watched{find_port(program.graph.outputs, output)->wire};
+  drive.inputs[at] = {low};
+  const double before = interpret(program, drive, watched).front().back();
+  drive.inputs[at].assign(drive.steps, low);
+  drive.inputs[at].back() = high;
+  return (interpret(program, drive, watched).front().back() - before) / (high - low);
+}
+
+/// Of an output, the share that follows from the input's past, and of the rest what a plant that answers at once has
+/// from the input.
+struct Answered {
+  double by_past = 0.0;
+  double at_once = 0.0;
+};
+Answered answered_by(std::span<const double> input, std::span<const double> output, double at_once) {
+  if (!is_long_enough(input, output)) {
+    return {};
+  }
+  const auto as_it_is = [](std::span<const double> values) -> VectorXd {
+    return Eigen::Map<const VectorXd>(values.data(), std::ssize(values));
+  };
+  const VectorXd u = as_it_is(input);
+  const VectorXd y = as_it_is(output);
+  const double of_input = at_once * at_once * untold(u, y, 1).with_other;
+  const Untold of_output = untold(y, u, 1);
+  return {.by_past = of_output.by_itself > 0.0 ? 1.0 - of_output.with_other / of_output.by_itself : 0.0,
+          .at_once = of_input > 0.0 ? of_input / std::max(of_input, of_output.with_other) : 0.0};
+}
+
 std::span<const double> part_of(const std::vector<double>& values) {
   return std::span(values).first(std::min(values.size(), longest));
 }
@@ -82,31 +159,17 @@ std::span<const double> part_of(const std::vector<double>& values) {
 }  // namespace
 
 double feedback_share(std::span<const double> input, std::span<const double> output) {
-  if (!is_long_enough(input, output)) {
-    return 0.0;
+  constexpr std::size_t stretches = 8;
+  std::vector<double> shares;
+  for (std::size_t i = 0; i < stretches; ++i) {
+    const std::size_t begin = i * input.size() / stretches;
+    const std::size_t size = (i + 1) * input.size() / stretches - begin;
+    if (input.size() == output.size()) {
+      shares.push_back(feedback_in(input.subspan(begin, size), output.subspan(begin, size)));
+    }
   }
-  const VectorXd u = centred(input);
-  const VectorXd y = centred(output);
-  if (u.isZero(0.0) || y.isZero(0.0)) {
-    return 0.0;
-  }
-  const Index rows = u.size() - past;
-  MatrixXd known(rows, 2 * past + 1);
-  known.col(past).setOnes();
-  for (Index i = 0; i < past; ++i) {
-    known.col(i) = u.segment(past - 1 - i, rows);
-    known.col(past + 1 + i) = y.segment(past - i, rows);
-  }
-  const VectorXd wanted = u.tail(rows);
-  const auto left_by = [&](const auto& columns) {
-    const MatrixXd list = columns;
-    return (wanted - list * list.colPivHouseholderQr().solve(wanted)).squaredNorm();
-  };
-  const double by_itself = left_by(known.leftCols(past + 1));
-  const double with_output = left_by(known);
-  // Of a line, a sine or a staircase without noise its own past tells all: there is nothing to follow.
-  const double nothing = still * wanted.squaredNorm();
-  return by_itself > nothing ? std::clamp(1.0 - with_output / by_itself, 0.0, 1.0) : 0.0;
+  std::ranges::sort(shares);
+  return shares.empty() ? 0.0 : 0.5 * (shares[(stretches - 1) / 2] + shares[stretches / 2]);
 }
 
 double oddness(std::span<const double> input, std::span<const double> output) {
@@ -134,6 +197,8 @@ std::optional<LoopFinding> control_loop(const Task& task, const Program& program
     return std::nullopt;
   }
   LoopFinding result{.input = input->name, .output = task.outputs.front()};
+  const double at_once = answer_at_once(program, *input, task.records.front(), result.output);
+  Answered answered;
   double samples = 0.0;
   for (const records::Record& record : task.records) {
     const std::span<const double> u = part_of(record.column(result.input).values);
@@ -141,11 +206,17 @@ std::optional<LoopFinding> control_loop(const Task& task, const Program& program
     const auto size = static_cast<double>(u.size());
     result.feedback += size * feedback_share(u, y);
     result.oddness += size * oddness(u, y);
+    const Answered here = answered_by(u, y, at_once);
+    answered.by_past += size * here.by_past;
+    answered.at_once += size * here.at_once;
     samples += size;
   }
   result.feedback /= samples;
   result.oddness /= samples;
-  if (!rules.is_above(policy::fed_back, result.feedback, result.input)) {
+  // Both shares are of squares.
+  if (!rules.is_above(policy::fed_back, result.feedback, result.input) ||
+      answered.by_past / samples > result.feedback ||
+      answered.at_once / samples > policy::at_once.value * policy::at_once.value * result.feedback) {
     return std::nullopt;
   }
   return result;

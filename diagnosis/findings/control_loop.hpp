@@ -23,8 +23,9 @@
 namespace hysteron::diagnosis {
 
 /// Of what the input's own past does not tell of it, in squares, the share that follows from the output now and
-/// before: near 1 where a controller without noise sets it. By linear regression on five samples; 0 where a signal
-/// stands still, or its own past tells all.
+/// before: near 1 where a controller without noise sets it. By linear regression on five samples, in the middle one of
+/// eight stretches: a single step of the input, and what it does, is no controller. 0 where a signal stands still, or
+/// its own past tells all.
 [[nodiscard]] double feedback_share(std::span<const double> input, std::span<const double> output);
 
 /// Of the energy of the cross-correlation the share that is odd about lag 0, by the cross-spectrum S of both signals:
@@ -36,6 +37,9 @@ namespace hysteron::diagnosis {
 [[nodiscard]] double oddness(std::span<const double> input, std::span<const double> output);
 
 /// Of a diagram with one measured output and one input that moves, where the record shows that the one sets the other.
+/// A plant that answers within the sample looks the same: nothing is said where the diagram's own answer would make up
+/// a notable part of that share (`at once` in policy.hpp), or where the output follows from the past of the input
+/// more than the input from the output.
 [[nodiscard]] std::optional<LoopFinding> control_loop(const Task& task, const Program& program, Rules& rules);
 
 /// Whether a family is what makes a loop swing oddly: dry friction, or the play that is a stiction without its jump

@@ -105,6 +105,14 @@ void add_verdict(const Judged& judged, const Answer& answer, const Explanation& 
   } else if (answer.is_named() && !judged.evidence.families.empty()) {
     result.confidence = confidence_of(judged.evidence, judged.evidence.sets.front());
   }
+  if (judged.loop && judged.evidence.families.empty()) {  // their probabilities have it already
+    const auto families = families_by_effect(record.input.program);
+    const bool sticks = std::ranges::any_of(result.effects, [&](const EffectFinding& one) {
+      const auto known = families.find(one.id);
+      return known != families.end() && is_sticking(known->second);
+    });
+    result.confidence = with_loop(*judged.loop, result.confidence, sticks);
+  }
   const std::vector<Edge> edges = edges_of_text(record.input.text, record.top);
   std::vector<LeftOut> left_out = record.left_out;
   forget_explained(left_out, record.task, judged.chosen());
@@ -155,6 +163,7 @@ Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOption
                    .siblings = options.prior.siblings(),
                    .evidence = judged.evidence,
                    .budget = judged.budget,
+                   .loop = judged.loop,
                    .unknown_score = answer.unknown_score,
                    .top = record.top,
                    .tried = judged.tried};
@@ -167,13 +176,6 @@ Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOption
   for (EffectFinding& effect : result.effects) {
     const auto known = families.find(effect.id);
     effect.family = known == families.end() ? effect.id : known->second;
-  }
-  if (judged.loop) {
-    result.loop = judged.loop;
-    if (judged.evidence.families.empty()) {  // their probabilities have it already
-      const bool sticks = std::ranges::any_of(result.effects, is_sticking, &EffectFinding::family);
-      result.confidence = with_loop(*judged.loop, result.confidence, sticks);
-    }
   }
   result.traces = traces_of(record.task, result.gaps, record.nominal, calibrated.fit.residuals, kept.fit.residuals);
   draw_over_inputs(record.task, kept.variant.program->graph, judged.evidence, result.traces);

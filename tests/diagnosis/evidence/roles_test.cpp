@@ -39,6 +39,62 @@ TEST(Roles, AFrictionIsAForce) {
   EXPECT_TRUE(may_act_on(kind_of("coulomb_friction"), {.unit = "N"}));
 }
 
+/// As the diagram runs: where a reference moves nearly as the axis does, the two are one signal, and none of them is
+/// exactly in proportion to what the edge carries.
+TEST(Roles, AForceInProportionToASpeedCarriesAVelocity) {
+  Space::Place place{.unit = "m/s^2"};
+  EXPECT_FALSE(carries_velocity(place, {}));
+  place.is_of_velocity = true;
+  EXPECT_TRUE(carries_velocity(place, {}));
+}
+
+TEST(Roles, AMotionThatIsGivenIsWorkedOutOfTheRecord) {
+  Space::Place place{.unit = "m/s^2", .is_given_motion = true};
+  for (const std::string effect : {"delay", "lag", "resonance", "creep", "relaxation"}) {
+    EXPECT_FALSE(may_act_on(kind_of(effect), place)) << effect;
+  }
+  EXPECT_TRUE(may_act_on(kind_of("coulomb_friction"), place));
+  EXPECT_TRUE(may_act_on(kind_of("odd_nonlinearity"), place)) << "a spring";
+  place.is_differentiated = true;
+  EXPECT_FALSE(may_act_on(kind_of("odd_nonlinearity"), place));
+  EXPECT_TRUE(may_act_on(kind_of("delay"), {.unit = "m", .is_port = true, .is_given_motion = true}))
+      << "a sensor that is late";
+}
+
+TEST(Motions, WhichInputASignalIsTheMotionOf) {
+  const Program program = compile_text(R"(FUNCTION_BLOCK P
+VAR_INPUT X : LREAL; P : LREAL; END_VAR VAR_OUTPUT F : LREAL; G : LREAL; END_VAR
+VAR V : HY_DERIVATIVE_FILTERED := (T1 := 0.01); A : HY_DERIVATIVE; M : HY_GAIN; I : HY_INTEGRAL; END_VAR
+V(XIN := X); A(XIN := V.XOUT); M(XIN := A.XOUT); I(XIN := X + P); F := M.XOUT; G := I.XOUT;
+END_FUNCTION_BLOCK)",
+                                       {.any_order = true});
+  const Graph& graph = program.graph;
+  const Port* const input = followed_input(graph, find_port(graph.outputs, "F")->wire);
+  ASSERT_NE(input, nullptr);
+  EXPECT_EQ(input->name, "X");
+  EXPECT_EQ(followed_input(graph, find_port(graph.outputs, "G")->wire), nullptr);
+  EXPECT_TRUE(leads_to_rates(graph, "V"));
+  EXPECT_FALSE(leads_to_rates(graph, "A"));
+  EXPECT_FALSE(leads_to_rates(graph, "I")) << "nobody reads it";
+}
+
+TEST(Motions, WhatASignalIsAConstantTimesOf) {
+  const Program program = compile_text(R"(FUNCTION_BLOCK P
+VAR_INPUT U : LREAL; N : LREAL := 2.0; (* @param *) END_VAR VAR_OUTPUT Y : LREAL; Z : LREAL; W : LREAL; END_VAR
+VAR A : HY_GAIN; B : HY_INTEGRAL_FORWARD; C : HY_GAIN; END_VAR
+B(XIN := U); A(XIN := -(N * B.XOUT) / 3.0); C(XIN := B.XOUT * U); Y := A.XOUT; Z := C.XOUT; W := 2.0 * U;
+END_FUNCTION_BLOCK)",
+                                       {.any_order = true});
+  const Graph& graph = program.graph;
+  const Wire of_gains = without_gains(graph, find_port(graph.outputs, "Y")->wire);
+  ASSERT_EQ(of_gains.from, Wire::From::Node);
+  EXPECT_EQ(graph.nodes[of_gains.index].path, "B");
+  const Wire of_product = without_gains(graph, find_port(graph.outputs, "Z")->wire);
+  ASSERT_EQ(of_product.from, Wire::From::Node);
+  EXPECT_NE(graph.nodes[of_product.index].path, "B") << "two signals";
+  EXPECT_EQ(without_gains(graph, find_port(graph.outputs, "W")->wire).from, Wire::From::Input);
+}
+
 TEST(Balance, IsASumThatIsIntegrated) {
   const Program program = compile_text(R"(FUNCTION_BLOCK P
 VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; Z : LREAL; END_VAR

@@ -176,6 +176,32 @@ TEST(ControlLoop, IsFoundWhereAControllerSetsTheOnlyInput) {
   EXPECT_THAT(sentence_of(*tight), HasSubstr("hardly as where a valve sticks"));
 }
 
+/// A plant that answers at once follows its input in the same sample, as the input would follow it: of a rough input
+/// and little noise, all of it can be worked out of the output.
+TEST(ControlLoop, IsNoneWhereThePlantAnswersAtOnce) {
+  test::Noise noise(5);
+  Logged log;
+  double level = 0.0;
+  for (std::size_t k = 0; k < 1500; ++k) {
+    log.op.push_back(noise());
+    level += (log.op.back() - level) / 6.0;
+    log.pv.push_back(level + 1e-4 * noise());
+  }
+  EXPECT_GT(feedback_share(log.op, log.pv), 0.9);
+  EXPECT_FALSE(found_in(flow, record_of(log)));
+}
+
+/// One step is a motion of the input that the output tells, in one sample of all.
+TEST(ControlLoop, AStepIsNoController) {
+  test::Noise noise(2);
+  Logged log{.op = std::vector<double>(400, 0.0), .pv = noise.white(400, 0.001)};
+  for (std::size_t k = 200; k < 400; ++k) {
+    log.op[k] = 1.0;
+    log.pv[k] += 1.0 - std::exp(-static_cast<double>(k - 199) / 6.0);
+  }
+  EXPECT_EQ(feedback_share(log.op, log.pv), 0.0);
+}
+
 TEST(ControlLoop, IsNoneWhereAnotherInputMoves) {
   records::Record record = record_of(logged({.band = 2.0}));
   std::vector<double> other(record.size(), 0.0);

@@ -79,7 +79,7 @@ std::map<std::string, fs::path> objects_below(const fs::path& folder) {
 /// The folder of the project that a file belongs to: the nearest one above it with a .plcproj; its own where there is
 /// none.
 fs::path folder_of_project(const fs::path& file) {
-  const fs::path own = fs::absolute(file).parent_path();
+  fs::path own = fs::absolute(file).parent_path();
   for (fs::path folder = own; folder != folder.root_path(); folder = folder.parent_path()) {
     std::error_code unreadable;
     for (const auto& one : fs::directory_iterator(folder, unreadable)) {

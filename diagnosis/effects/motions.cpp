@@ -151,13 +151,13 @@ Wire without_gains(const Graph& graph, Wire signal) {
   while (signal.from == Wire::From::Node) {
     const Node& node = graph.nodes[signal.index];
     const Wire& first = graph.wire(node, 0);
-    const bool is_gain = node.block != nullptr && node.block->about.name == "HY_GAIN";
-    if (is_gain || (node.block == nullptr && node.op == Op::Negate)) {
-      signal = first;
-    } else if (node.block == nullptr && node.op == Op::Multiply && is_constant(first)) {
+    const bool is_operation = node.block == nullptr;
+    const bool is_product = is_operation && node.op == Op::Multiply;
+    const bool is_scaled = (is_product || (is_operation && node.op == Op::Divide)) && is_constant(graph.wire(node, 1));
+    if (is_product && is_constant(first)) {
       signal = graph.wire(node, 1);
-    } else if (node.block == nullptr && (node.op == Op::Multiply || node.op == Op::Divide) &&
-               is_constant(graph.wire(node, 1))) {
+    } else if (is_scaled || (is_operation && node.op == Op::Negate) ||
+               (!is_operation && node.block->about.name == "HY_GAIN")) {
       signal = first;
     } else {
       break;

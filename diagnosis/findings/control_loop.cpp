@@ -72,8 +72,7 @@ Untold untold(const VectorXd& signal, const VectorXd& other, Index lag) {
     known.col(past + 1 + i) = other.segment(past - i - lag, rows);
   }
   const VectorXd wanted = signal.tail(rows);
-  const auto left_by = [&](const auto& columns) {
-    const MatrixXd list = columns;
+  const auto left_by = [&](const MatrixXd& list) {
     return (wanted - list * list.colPivHouseholderQr().solve(wanted)).squaredNorm();
   };
   return {.by_itself = left_by(known.leftCols(past + 1)), .with_other = left_by(known)};

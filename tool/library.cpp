@@ -58,8 +58,8 @@ int write_library(const LibraryOptions& options, Console& console) {
            "write a whole number of nanoseconds above 0 in ns, us, ms or s, as in --ts 50us.");
   }
   std::vector<OutputFile> files;
-  for (const GeneratedFile& file : generate_st_library(nanoseconds,
-                                                       {.dialect = *dialect, .float32 = options.float32})) {
+  for (const GeneratedFile& file :
+       generate_st_library(nanoseconds, {.dialect = *dialect, .float32 = options.float32})) {
     files.push_back({.path = fs::path(options.folder) / file.name, .contents = file.text});
     refuse_foreign_file(files.back().path, file.text, "choose another folder with --out.");
   }

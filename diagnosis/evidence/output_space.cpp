@@ -31,11 +31,6 @@ Program with_values(const Task& task, const Program& program, const VectorXd& kn
   return result;
 }
 
-std::string unit_of_sum(const Program& program, const std::string& instance) {
-  const auto at = find_node(program.graph, instance) - program.graph.nodes.data();
-  return units::Solution(program.graph, program.schedule).outputs()[static_cast<std::size_t>(at)].front();
-}
-
 bool is_port(const Graph& graph, const Edge& edge) {
   const auto is_named = [&](const Port& port) {
     return language::same_name(edge.name, port.name) ||
@@ -47,6 +42,7 @@ bool is_port(const Graph& graph, const Edge& edge) {
 
 Space::Place place_of(const Task& task, const Program& there, const SummedEdge& edge, const Graph& graph) {
   const std::vector<std::vector<std::string>> units = units::Solution(there.graph, there.schedule).outputs();
+  const auto sum = find_node(there.graph, edge.instance) - there.graph.nodes.data();
   const auto unit_of = [&](const Wire& wire) -> std::string {
     if (wire.from == Wire::From::Input) {
       return there.graph.inputs[wire.index].unit;
@@ -63,7 +59,7 @@ Space::Place place_of(const Task& task, const Program& there, const SummedEdge& 
   const Port* const input = followed_input(there.graph, edge.before);
   const bool is_given = !asks_for_motion && input != nullptr && is_motion(input->unit);
   return {.edge = edge.edge,
-          .unit = unit_of_sum(there, edge.instance),
+          .unit = units[static_cast<std::size_t>(sum)].front(),
           .is_port = is_port(graph, edge.edge),
           .is_integral = is_integral(there.graph, edge.before),
           .is_balance = is_balance(there.graph, edge.before, edge.instance),

@@ -34,9 +34,6 @@ class OutputSpace : public Space {
   std::vector<DriverSignal> drivers_{};
 };
 
-/// The unit of what a sum gives, where the diagram says it.
-[[nodiscard]] std::string unit_of_sum(const Program& program, const std::string& instance);
-
 /// Whether an edge is an input or an output of the diagram.
 [[nodiscard]] bool is_port(const Graph& graph, const Edge& edge);
 

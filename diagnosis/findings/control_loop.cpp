@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <unsupported/Eigen/FFT>
@@ -94,25 +95,33 @@ double feedback_in(std::span<const double> input, std::span<const double> output
   return left.by_itself > nothing ? std::clamp(1.0 - left.with_other / left.by_itself, 0.0, 1.0) : 0.0;
 }
 
-/// The first input that a column of the records drives and that moves; nothing where there are several.
+bool moves(const records::Record& record, const Port& input) {
+  const records::Column* const column = record.find(input.name);
+  return column != nullptr &&
+         std::ranges::adjacent_find(column->values, std::ranges::not_equal_to()) != column->values.end();
+}
+
+/// The input that columns drive and that moves; nothing where there are several, or where a record has no column for
+/// it.
 const Port* lone_input(const Task& task, const Graph& graph) {
   const Port* result = nullptr;
   for (const Port& input : graph.inputs) {
-    const records::Column* const column = task.records.front().find(input.name);
-    if (input.type != Type::Real || column == nullptr || column->values.empty()) {
-      continue;
-    }
-    if (const auto [low, high] = std::ranges::minmax(column->values); low < high) {
+    const auto moves_in = [&](const records::Record& record) { return moves(record, input); };
+    if (input.type == Type::Real && std::ranges::any_of(task.records, moves_in)) {
       if (result != nullptr) {
         return nullptr;
       }
       result = &input;
     }
   }
-  return result;
+  const bool is_everywhere = result != nullptr && std::ranges::all_of(task.records, [&](const records::Record& record) {
+                               return record.find(result->name) != nullptr;
+                             });
+  return is_everywhere ? result : nullptr;
 }
 
-/// What the output of the diagram does in the very sample in which the input moves by 1, after a rest.
+/// What the output of the diagram does in the very sample in which the input moves by 1, after a rest. The input moves
+/// in the record.
 double answer_at_once(const Program& program, const Port& input, const records::Record& record,
                       const std::string& output) {
   constexpr std::size_t rest = 10;  // a block may take its first sample for what was before
@@ -196,26 +205,35 @@ std::optional<LoopFinding> control_loop(const Task& task, const Program& program
     return std::nullopt;
   }
   LoopFinding result{.input = input->name, .output = task.outputs.front()};
-  const double at_once = answer_at_once(program, *input, task.records.front(), result.output);
-  Answered answered;
+  const auto signals_of = [&](const records::Record& record) {
+    return std::pair(part_of(record.column(result.input).values), part_of(record.column(result.output).values));
+  };
   double samples = 0.0;
   for (const records::Record& record : task.records) {
-    const std::span<const double> u = part_of(record.column(result.input).values);
-    const std::span<const double> y = part_of(record.column(result.output).values);
-    const auto size = static_cast<double>(u.size());
-    result.feedback += size * feedback_share(u, y);
-    result.oddness += size * oddness(u, y);
-    const Answered here = answered_by(u, y, at_once);
-    answered.by_past += size * here.by_past;
-    answered.at_once += size * here.at_once;
-    samples += size;
+    const auto [u, y] = signals_of(record);
+    result.feedback += static_cast<double>(u.size()) * feedback_share(u, y);
+    samples += static_cast<double>(u.size());
   }
   result.feedback /= samples;
-  result.oddness /= samples;
+  if (!rules.is_above(policy::fed_back, result.feedback, result.input)) {
+    return std::nullopt;
+  }
+  const auto moving =
+      std::ranges::find_if(task.records, [&](const records::Record& record) { return moves(record, *input); });
+  const double at_once = answer_at_once(program, *input, *moving, result.output);
+  Answered answered;
+  result.oddness = 0.0;
+  for (const records::Record& record : task.records) {
+    const auto [u, y] = signals_of(record);
+    const double part = static_cast<double>(u.size()) / samples;
+    const Answered here = answered_by(u, y, at_once);
+    answered.by_past += part * here.by_past;
+    answered.at_once += part * here.at_once;
+    result.oddness += part * oddness(u, y);
+  }
   // Both shares are of squares.
-  if (!rules.is_above(policy::fed_back, result.feedback, result.input) ||
-      answered.by_past / samples > result.feedback ||
-      answered.at_once / samples > policy::at_once.value * policy::at_once.value * result.feedback) {
+  if (answered.by_past > result.feedback ||
+      answered.at_once > policy::at_once.value * policy::at_once.value * result.feedback) {
     return std::nullopt;
   }
   return result;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <utility>
 
 #include "codegen/parameters/elements.hpp"
@@ -105,12 +106,13 @@ void add_verdict(const Judged& judged, const Answer& answer, const Explanation& 
   } else if (answer.is_named() && !judged.evidence.families.empty()) {
     result.confidence = confidence_of(judged.evidence, judged.evidence.sets.front());
   }
+  const std::map<std::string, std::string> families = families_by_effect(record.input.program);
+  const auto family_of = [&](const EffectFinding& effect) {
+    const auto known = families.find(effect.id);
+    return known == families.end() ? effect.id : known->second;
+  };
   if (judged.loop && judged.evidence.families.empty()) {  // their probabilities have it already
-    const auto families = families_by_effect(record.input.program);
-    const bool sticks = std::ranges::any_of(result.effects, [&](const EffectFinding& one) {
-      const auto known = families.find(one.id);
-      return known != families.end() && is_sticking(known->second);
-    });
+    const bool sticks = std::ranges::any_of(result.effects, is_sticking, family_of);
     result.confidence = with_loop(*judged.loop, result.confidence, sticks);
   }
   const std::vector<Edge> edges = edges_of_text(record.input.text, record.top);
@@ -119,6 +121,9 @@ void add_verdict(const Judged& judged, const Answer& answer, const Explanation& 
   add_left_out(findings,
                {.left_out = left_out, .floors = record.floors, .noise = answer.noise, .tried = options.effects}, edges,
                result);
+  for (EffectFinding& effect : result.effects) {
+    effect.family = family_of(effect);
+  }
   result.split = split_of(result.effects, edges, ports_of(record));
   doubt({.task = record.task,
          .chosen = judged.chosen(),
@@ -172,11 +177,6 @@ Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOption
   result.inputs = ranges_of_inputs(record);
   result.cuts = cuts_at(record.inner, record.task, *record.base.program, materiality_of(record, options));
   add_verdict(judged, answer, kept, options, rules, result);
-  const auto families = families_by_effect(record.input.program);
-  for (EffectFinding& effect : result.effects) {
-    const auto known = families.find(effect.id);
-    effect.family = known == families.end() ? effect.id : known->second;
-  }
   result.traces = traces_of(record.task, result.gaps, record.nominal, calibrated.fit.residuals, kept.fit.residuals);
   draw_over_inputs(record.task, kept.variant.program->graph, judged.evidence, result.traces);
   const Explanation quiet = without_noise(kept, record.top);

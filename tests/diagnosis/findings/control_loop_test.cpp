@@ -152,12 +152,16 @@ records::Record record_of(const Logged& log) {
   return record;
 }
 
-std::optional<LoopFinding> found_in(const std::string& text, records::Record record,
-                                    const std::vector<std::string>& without = {}) {
+std::optional<LoopFinding> found_in_all(const std::string& text, std::vector<records::Record> list,
+                                        const std::vector<std::string>& without = {}) {
   const Program program = test::program_of(text);
-  const Task task{.records = {std::move(record)}, .outputs = {"PV"}};
+  const Task task{.records = std::move(list), .outputs = {"PV"}};
   Rules rules(without);
   return control_loop(task, program, rules);
+}
+std::optional<LoopFinding> found_in(const std::string& text, records::Record record,
+                                    const std::vector<std::string>& without = {}) {
+  return found_in_all(text, {std::move(record)}, without);
 }
 
 TEST(ControlLoop, IsFoundWhereAControllerSetsTheOnlyInput) {
@@ -213,6 +217,27 @@ TEST(ControlLoop, IsNoneWhereAnotherInputMoves) {
   record = record_of(logged({.band = 2.0}));
   record.replace("OP", std::vector<double>(record.size(), 30.0));
   EXPECT_FALSE(found_in(flow, record));
+}
+
+TEST(ControlLoop, IsLookedForInAllRecords) {
+  const records::Record sticking = record_of(logged({.gain = 0.3, .band = 2.0}));
+  const auto one = found_in(flow, sticking);
+  const auto two = found_in_all(flow, {sticking, sticking});
+  ASSERT_TRUE(one && two);
+  EXPECT_NEAR(two->feedback, one->feedback, 1e-12);
+  EXPECT_NEAR(two->oddness, one->oddness, 1e-12);
+  EXPECT_NEAR(one->oddness, oddness(sticking.column("OP").values, sticking.column("PV").values), 1e-12);
+
+  records::Record resting = test::record_of("PV", test::Noise(4).white(800, 0.01), 1.0);
+  EXPECT_FALSE(found_in_all(flow, {sticking, resting})) << "a record without the input, which has a default";
+  resting.add({.name = "OP", .values = std::vector<double>(800, 30.0)});
+  const auto first_rests = found_in_all(flow, {resting, sticking});
+  ASSERT_TRUE(first_rests);
+  EXPECT_LT(first_rests->feedback, one->feedback);
+  std::vector<double> other(800, 0.0);
+  other.back() = 1.0;
+  resting.add({.name = "Q", .values = other});
+  EXPECT_FALSE(found_in_all(flow, {sticking, resting})) << "another input moves in the second record";
 }
 
 TEST(ControlLoop, GivesItsOddsToWhatSticks) {
